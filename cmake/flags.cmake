@@ -1,0 +1,24 @@
+# Flags shared by everything of ours. Floating point is IEEE to the letter: results are the same bits for every compiler,
+# SIMD width and machine, so no contraction into fused multiply-adds and no fast-math.
+add_library(lendulet_flags INTERFACE)
+target_compile_options(lendulet_flags INTERFACE
+    -Wall -Wextra -Wno-psabi -Wno-ignored-attributes
+    -ffp-contract=off -fno-math-errno -fno-trapping-math)
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    target_compile_options(lendulet_flags INTERFACE -Wno-missing-braces -Wno-unused-const-variable)
+endif()
+if(LENDULET_ASSERTIONS)
+    target_compile_definitions(lendulet_flags INTERFACE LENDULET_ASSERTIONS)
+endif()
+if(LENDULET_SINGLE_THREADED)
+    target_compile_definitions(lendulet_flags INTERFACE LENDULET_SINGLE_THREADED)
+endif()
+if(LENDULET_SANITIZE)
+    target_compile_options(lendulet_flags INTERFACE -fsanitize=${LENDULET_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    target_link_options(lendulet_flags INTERFACE -fsanitize=${LENDULET_SANITIZE})
+endif()
+
+# The core neither throws nor asks for types at run time.
+add_library(lendulet_core_flags INTERFACE)
+target_compile_options(lendulet_core_flags INTERFACE -fno-exceptions -fno-rtti -fvisibility=hidden)
+target_link_libraries(lendulet_core_flags INTERFACE lendulet_flags)

@@ -1,0 +1,179 @@
+// Bodies: how they are described, and the short-lived views through which they are read and changed.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "lendulet/math.h"
+#include "lendulet/result.h"
+#include "lendulet/shapes.h"
+
+namespace lendulet {
+
+// Handles: zero is null; a handle of a removed object is detected, also when its slot is used again.
+struct BodyId {
+    uint32_t index = 0, generation = 0;
+    explicit operator bool() const { return generation != 0; }
+    bool operator==(const BodyId&) const = default;
+};
+struct ColliderId {
+    uint32_t index = 0, generation = 0;
+    explicit operator bool() const { return generation != 0; }
+    bool operator==(const ColliderId&) const = default;
+};
+struct JointId {
+    uint32_t index = 0, generation = 0;
+    explicit operator bool() const { return generation != 0; }
+    bool operator==(const JointId&) const = default;
+};
+
+enum class BodyType : uint8_t { fixed, kinematic, dynamic };  // `fixed` is a static body (`static` is a keyword)
+
+// How the coefficients of two touching materials become one. Where the two materials disagree, the rule that comes first
+// in this list wins (as KHR_physics_rigid_bodies orders them).
+enum class CombineRule : uint8_t { average, minimum, maximum, multiply };
+
+// Surface of a collider. Unset values are the world's defaults.
+struct Material {
+    std::optional<float> static_friction;   // >= 0; a contact sticks while the tangential impulse it needs is <= this * N
+    std::optional<float> dynamic_friction;  // >= 0; otherwise it slides with this * N against the sliding direction
+    std::optional<float> restitution;       // 0 (dead) .. 1 (elastic)
+    CombineRule friction_combine = CombineRule::average;
+    CombineRule restitution_combine = CombineRule::maximum;
+};
+
+// Which colliders meet: both must find the other's category in their mask. Colliders with the same non-zero group never
+// collide (a ragdoll's parts, a chain's links).
+struct CollisionFilter {
+    uint64_t category = 1, mask = ~uint64_t{0};
+    uint32_t group = 0;
+};
+
+// A shape on a body.
+struct ColliderDef {
+    Shape shape;
+    Transform local;                // from the body's frame to the shape's
+    Material material;
+    CollisionFilter filter;
+    float density = 1000.0f;        // kg/m^3, > 0; ignored where the body's mass is given
+    bool is_trigger = false;        // reports overlaps, neither pushes nor adds mass
+    uint64_t user_data = 0;
+};
+
+// A body that forces move. One shape (`shape`), or several (`colliders`, which then replaces `shape` and the material
+// fields beside it).
+struct RigidBodyDef {
+    Shape shape = Sphere{};
+    Position position;              // of the body's frame, m
+    Quat orientation;
+    Vec3 velocity;                  // of the centre of mass, m/s
+    Vec3 angular_velocity;          // world frame, rad/s
+    float density = 1000.0f;        // kg/m^3, > 0
+    std::optional<float> friction;  // static and dynamic alike; unset: the world's default
+    std::optional<float> dynamic_friction;  // unset: `friction`
+    std::optional<float> restitution;
+    CollisionFilter filter;
+    std::span<const ColliderDef> colliders;
+
+    // Mass properties; what is unset follows from shapes and densities.
+    std::optional<float> mass;                 // kg, 1e-9 .. 1e12; scales the inertia unless that is given too
+    std::optional<Vec3> centre_of_mass;        // body frame, m
+    std::optional<SymMat3> inertia;            // about the centre of mass, body axes, kg m^2
+    float linear_damping = 0.0f;    // 1/s: velocity decays as exp(-damping t)
+    float angular_damping = 0.0f;   // 1/s
+    float gravity_factor = 1.0f;
+    bool allow_sleep = true;
+    bool kinematic = false;         // moves with its given velocities, is not pushed by anything
+    uint64_t user_data = 0;
+    std::string_view name;          // copied; at most 255 bytes are kept
+};
+
+// A body that never moves.
+struct StaticBodyDef {
+    Shape shape = Box{};
+    Position position;
+    Quat orientation;
+    std::optional<float> friction;
+    std::optional<float> dynamic_friction;
+    std::optional<float> restitution;
+    CollisionFilter filter;
+    std::span<const ColliderDef> colliders;
+    uint64_t user_data = 0;
+    std::string_view name;
+};
+
+class World;
+struct WorldData;
+
+// What is the same for bodies that move and bodies that do not. Views are cheap, hold no data and live until the world
+// changes its set of bodies. Every reading call is const and may run on several threads while no step and no writing
+// call runs.
+class StaticBodyRef {
+public:
+    BodyId id() const;
+    BodyType type() const;
+    Position position() const;         // of the body's frame, m
+    Quat orientation() const;          // body frame to world
+    Quat rotation() const { return orientation(); }
+    Mat3 rotation_matrix() const;
+    std::string_view name() const;     // empty where none was given
+    uint64_t user_data() const;
+    int collider_count() const;
+    const Shape& shape(int collider = 0) const;
+    ColliderId collider(int index = 0) const;
+    Aabb aabb() const;                 // of all colliders, without margin
+
+protected:
+    friend class World;
+    StaticBodyRef(WorldData& world, uint32_t slot) : world_(&world), slot_(slot) {}
+    WorldData* world_;
+    uint32_t slot_;
+};
+
+// A body that moves. State is momentum p and angular momentum L; velocities are derived.
+class RigidBodyRef : public StaticBodyRef {
+public:
+    float mass() const;                        // kg; infinity for a kinematic body
+    float inverse_mass() const;                // 1/kg; 0 for a kinematic body
+    Position centre_of_mass() const;           // world, m
+    SymMat3 inverse_inertia() const;           // world axes, about the centre of mass, 1/(kg m^2)
+    Vec3 momentum() const;                     // p, kg m/s
+    Vec3 angular_momentum() const;             // L about the centre of mass, world axes, kg m^2/s
+    Vec3 velocity() const;                     // v = p / m, of the centre of mass, m/s
+    Vec3 angular_velocity() const;             // w = R I^-1 R^T L, world axes, rad/s
+    float kinetic_energy() const;              // J
+    float potential_energy() const;            // -m g.x, zero at the world's origin, J
+    float energy() const { return kinetic_energy() + potential_energy(); }
+
+    // Velocity of the body's material at a world point: v + w x (point - x). (thesis 3.3.2)
+    Vec3 velocity_at(Position point) const;
+    // Change of the local velocity at `point` along the unit vector `direction` per unit impulse along it:
+    // T^-1(u) = u . [u / m + (I^-1 ((point - x) x u)) x (point - x)], 1/kg. (thesis 3.3.2, from Baraff)
+    float impulse_effectiveness(Position point, Vec3 direction) const;
+
+    // Writing calls. Each gives an error and changes nothing where an argument is not finite, and wakes the body.
+    Status set_pose(Position position, Quat orientation);  // quaternions within 1e-3 of unit length are normalised
+    Status set_velocity(Vec3 velocity);
+    Status set_angular_velocity(Vec3 angular_velocity);
+    Status set_momentum(Vec3 momentum);
+    Status set_angular_momentum(Vec3 angular_momentum);
+    Status apply_impulse(Vec3 impulse, Position point);    // N s at a world point: p += J, L += (point - x) x J
+    Status apply_impulse(Vec3 impulse);                    // at the centre of mass
+    Status apply_angular_impulse(Vec3 angular_impulse);    // N m s
+    Status apply_force(Vec3 force, Position point);        // N, held during the next step
+    Status apply_force(Vec3 force);
+    Status apply_torque(Vec3 torque);                      // N m, held during the next step
+    // Kinematic bodies: velocities such that the body arrives at this pose after a step of `dt`.
+    Status move_to(Position position, Quat orientation, float dt);
+
+    bool asleep() const;
+    void wake();
+
+private:
+    friend class World;
+    using StaticBodyRef::StaticBodyRef;
+};
+
+}  // namespace lendulet

@@ -1,0 +1,221 @@
+// The world: bodies, joints and their simulation. WorldBuilder collects settings, build() checks them all.
+//
+// Threads: a world is one object; writing calls (add, remove, update, setters) must not overlap with any other call on
+// it. Const calls may run on several threads at once between writing calls. Task and allocator hooks are called on the
+// thread that calls update(), tasks themselves on whatever thread the hook chooses. There are no other callbacks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "lendulet/body.h"
+#include "lendulet/joint.h"
+#include "lendulet/options.h"
+
+namespace lendulet {
+
+// Memory of a world comes from here; the default is the C++ heap. `allocate` must give memory aligned to `alignment`
+// (a power of two up to 64) or null, which ends the program.
+struct AllocatorHook {
+    void* user = nullptr;
+    void* (*allocate)(void* user, size_t bytes, size_t alignment) = nullptr;
+    void (*free)(void* user, void* memory, size_t bytes, size_t alignment) = nullptr;
+};
+
+// Runs the world's loops on the user's own threads: must call run(context, begin, end, worker) over disjoint ranges that
+// cover [0, count), with worker < workers and never the same worker number at the same time, and return when all are
+// done. Results never depend on how the range was cut.
+struct TaskHook {
+    void* user = nullptr;
+    int workers = 0;
+    void (*parallel_for)(void* user, int count, int grain, void (*run)(void* context, int begin, int end, int worker),
+                         void* context) = nullptr;
+};
+
+// Every setting of a world; WorldBuilder fills it in.
+struct WorldConfig {
+    Vec3 gravity{0.0f, -9.81f, 0.0f};   // m/s^2
+    int solver_steps = 8;               // substeps per step, 1 .. 64
+    float rigid_separation_speed = 3.0f;   // m/s: fastest that overlap between two rigid bodies is undone
+    float static_separation_speed = 3.0f;  // m/s: the same against static and kinematic bodies
+    float friction = 0.5f;              // default static and dynamic coefficient
+    float restitution = 0.0f;           // default bounciness, 0 .. 1
+    BroadPhaseType broad_phase = BroadPhaseType::rtree_omt;
+    SimplexSolver simplex = SimplexSolver::half_space;
+    Integrator integrator = Integrator::momentum;
+    int workers = 1;                    // threads including the caller's, 1 .. 64
+    int width = 0;                      // SIMD lanes 1, 4, 8 or 16; 0: the widest this machine has
+    bool allow_sleep = true;
+    AllocatorHook allocator;
+    TaskHook tasks;
+};
+
+// One point of a contact between two colliders.
+struct ContactPoint {
+    Position position;     // half way between the two surfaces, m
+    float separation;      // m, negative = overlap
+    float normal_impulse;  // of the last substep, N s
+};
+
+// A contact: up to four points with one normal.
+struct Contact {
+    BodyId body_a, body_b;
+    ColliderId collider_a, collider_b;
+    Vec3 normal;             // unit, from A to B
+    Vec3 friction_impulse;   // on B, of the last substep, N s
+    int point_count;
+    ContactPoint points[4];
+    int32_t triangle;        // index of the mesh triangle, -1 where none is involved
+};
+
+// Two colliders, one of them a trigger, that overlap.
+struct Overlap {
+    BodyId trigger_body, other_body;
+    ColliderId trigger, other;
+};
+
+// A node box or leaf box of the broad phase.
+struct AabbView {
+    Aabb box;
+    int depth;  // 0: root; for structures without levels all boxes have depth 0
+    bool leaf;
+};
+
+// Hit of a ray on a collider's bounding box (exact shape queries come with their own interface).
+struct BoxHit {
+    BodyId body;
+    ColliderId collider;
+    float fraction;  // of the ray's length at which it enters the box, 0 where it starts inside
+};
+
+enum class Stage : uint8_t { bounds, broad_phase, pairs, narrow_phase, islands, prepare, solve, finish, count };
+std::string_view name_of(Stage);
+
+// What the last step did.
+struct StepStatistics {
+    double stage_ms[static_cast<int>(Stage::count)];
+    double total_ms;
+    int bodies, awake_bodies, pairs, manifolds, contact_points, colours, overflow_manifolds, joints;
+    float max_penetration;   // deepest overlap after the step, m
+    int capped_bodies;       // bodies whose speed was cut to the limit
+    int contained_bodies;    // bodies whose state went non-finite, was put back and stopped
+    size_t bytes_per_body, bytes_per_manifold;
+};
+
+struct Momentum {
+    double linear[3];   // kg m/s
+    double angular[3];  // about the world's origin, kg m^2/s
+};
+
+class World {
+public:
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+    ~World();
+
+    // --- bodies and joints
+    // Errors: non_finite, bad_rotation, bad_mass, bad_inertia, bad_extent, bad_material, bad_collider,
+    // shape_not_dynamic, out_of_world. On an error nothing has changed.
+    Result<BodyId> add_rigid_body(const RigidBodyDef& def);
+    Result<BodyId> add_static_body(const StaticBodyDef& def);
+    // Removes the body with its colliders and joints. Error: stale_id.
+    Status remove_body(BodyId id);
+    // Errors: stale_id, bad_joint, no_dynamic_body, non_finite.
+    Result<JointId> add_joint(const JointDef& def);
+    Status remove_joint(JointId id);
+    Status set_motor(JointId id, Motor motor);
+    // A joint's frames on its two bodies from one frame in the world (x axis along `axis`).
+    Result<JointDef> joint_at(JointType type, BodyId a, BodyId b, Position anchor, Vec3 axis = {1.0f, 0.0f, 0.0f}) const;
+
+    bool alive(BodyId id) const;
+    bool alive(JointId id) const;
+    // Views; a stale id, or get() on a static body, ends the program with a sentence: ask alive() where it may be stale.
+    RigidBodyRef get(BodyId id);
+    const RigidBodyRef get(BodyId id) const;
+    StaticBodyRef get_static(BodyId id) const;  // any body
+    JointState joint(JointId id) const;
+
+    // --- simulation
+    // Advances by dt seconds (0 .. 1; longer steps are cut into equal ones of at most 1 s). dt = 0 does nothing.
+    // Errors: bad_time_step.
+    Status update(float dt);
+    Status set_gravity(Vec3 gravity);
+    const WorldConfig& config() const;
+    const StepStatistics& statistics() const;
+    double time() const;       // seconds simulated
+    uint64_t step_count() const;
+
+    // --- iteration; all in creation order
+    int body_count() const;
+    int joint_count() const;
+    BodyId body(int index) const;      // 0 .. body_count() - 1
+    JointId joint_id(int index) const;
+    // Contacts of the last step, ordered by colliders: the same for every broad phase and number of workers.
+    int contact_count() const;
+    Contact contact(int index) const;
+    std::span<const Overlap> overlaps() const;  // triggers, of the last step
+    // Calls visit(AabbView) for every leaf and node box of the broad phase.
+    template <class Visit>
+    void for_each_aabb(Visit&& visit) const {
+        visit_aabbs([](void* context, const AabbView& view) { (*static_cast<std::remove_reference_t<Visit>*>(context))(view); },
+                    const_cast<void*>(static_cast<const void*>(&visit)));
+    }
+    // Colliders whose bounding boxes overlap `box`, at most `capacity`, in collider order; returns how many there are.
+    int query_boxes(const Aabb& box, ColliderId* out, int capacity) const;
+    // Nearest collider box that the segment from `origin` along `translation` meets. Error: bad_query.
+    Result<BoxHit> nearest_box(Position origin, Vec3 translation) const;
+    BodyId body_of(ColliderId id) const;
+
+    // --- whole-world figures
+    double kinetic_energy() const;    // J
+    double potential_energy() const;  // J, against gravity from the origin
+    Momentum momentum() const;
+    // Hash of all poses, p, L and warm-start impulses: equal for any number of workers, SIMD width, broad phase and
+    // compiler, native and WebAssembly.
+    uint64_t hash() const;
+    std::span<const std::string> warnings() const;  // such as meshes that collide as hulls
+    // Verifies the internal structures; used by tests. Empty where all is well, else a sentence.
+    std::string check() const;
+
+private:
+    friend class WorldBuilder;
+    explicit World(std::unique_ptr<WorldData> data);
+    void visit_aabbs(void (*visit)(void*, const AabbView&), void* context) const;
+    std::unique_ptr<WorldData> data_;
+};
+
+// Collects settings by name; build() checks them and gives a World or the first error (bad_config, non_finite).
+class WorldBuilder {
+public:
+    WorldBuilder& no_gravity() { return gravity({}); }
+    WorldBuilder& down_gravity(float g) { return gravity({0.0f, -g, 0.0f}); }  // m/s^2 along -y
+    WorldBuilder& gravity(Vec3 g) { return config_.gravity = g, *this; }
+    WorldBuilder& solver_steps(int n) { return config_.solver_steps = n, *this; }
+    WorldBuilder& rigid_separation_speed(float v) { return config_.rigid_separation_speed = v, *this; }
+    WorldBuilder& static_separation_speed(float v) { return config_.static_separation_speed = v, *this; }
+    WorldBuilder& no_friction() { return friction(0.0f); }
+    WorldBuilder& friction(float mu) { return config_.friction = mu, *this; }
+    WorldBuilder& no_bounciness() { return bounciness(0.0f); }
+    WorldBuilder& max_bounciness() { return bounciness(1.0f); }
+    WorldBuilder& bounciness(float e) { return config_.restitution = e, *this; }
+    WorldBuilder& broad_phase(BroadPhaseType type) { return config_.broad_phase = type, *this; }
+    WorldBuilder& simplex(SimplexSolver solver) { return config_.simplex = solver, *this; }
+    WorldBuilder& integrator(Integrator integrator) { return config_.integrator = integrator, *this; }
+    WorldBuilder& workers(int n) { return config_.workers = n, *this; }
+    WorldBuilder& width(int lanes) { return config_.width = lanes, *this; }
+    WorldBuilder& sleep(bool allow) { return config_.allow_sleep = allow, *this; }
+    WorldBuilder& allocator(AllocatorHook hook) { return config_.allocator = hook, *this; }
+    WorldBuilder& tasks(TaskHook hook) { return config_.tasks = hook, *this; }
+    const WorldConfig& config() const { return config_; }
+    Result<World> build() const;
+
+private:
+    WorldConfig config_;
+};
+
+}  // namespace lendulet

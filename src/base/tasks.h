@@ -1,0 +1,68 @@
+// Fork-join loops over the workers of a world. A loop cuts [0, count) into chunks of `grain`; which worker takes which
+// chunk is left to chance, so bodies must write only to places given by their index.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <type_traits>
+
+namespace lendulet {
+
+class TaskPool {
+public:
+    using Run = void (*)(void* context, int begin, int end, int worker);
+    struct Hook {
+        void* user = nullptr;
+        int workers = 0;
+        void (*parallel_for)(void* user, int count, int grain, Run run, void* context) = nullptr;
+    };
+
+    // `workers` threads in all, the calling one included; with a hook no threads are started.
+    explicit TaskPool(int workers, Hook hook = {});
+    ~TaskPool();
+    TaskPool(const TaskPool&) = delete;
+    TaskPool& operator=(const TaskPool&) = delete;
+
+    int workers() const { return workers_; }
+
+    // Keeps the threads awake between loops from here to the end of the scope: a step is hundreds of short loops.
+    class Session {
+    public:
+        explicit Session(TaskPool& pool) : pool_(pool) { pool_.begin_session(); }
+        ~Session() { pool_.end_session(); }
+        Session(const Session&) = delete;
+        Session& operator=(const Session&) = delete;
+
+    private:
+        TaskPool& pool_;
+    };
+
+    // body(begin, end, worker) over disjoint chunks of [0, count); returns when all are done. Loops of one chunk, and
+    // all loops of a pool of one worker, run at once on the calling thread.
+    template <class Body>
+    void for_each(int count, int grain, Body&& body) {
+        if (count <= 0) return;
+        if (workers_ == 1 || count <= grain) {
+            body(0, count, 0);
+            return;
+        }
+        using Fn = std::remove_reference_t<Body>;
+        dispatch(count, grain, [](void* c, int b, int e, int w) { (*static_cast<Fn*>(c))(b, e, w); },
+                 const_cast<void*>(static_cast<const void*>(&body)));
+    }
+
+private:
+    void dispatch(int count, int grain, Run run, void* context);
+    void begin_session();
+    void end_session();
+    void thread_main(int worker);
+    void work(int worker);
+
+    struct Threads;  // std::thread and its friends, absent in single-threaded builds
+    int workers_ = 1;
+    Hook hook_;
+    std::unique_ptr<Threads> threads_;
+};
+
+}  // namespace lendulet

@@ -1,0 +1,41 @@
+// Manifolds between two colliders of any kind. Pure functions of geometry, relative pose and a cache that the caller
+// keeps with the pair: no bodies, ids or worlds here.
+#pragma once
+
+#include <cstdint>
+
+#include "collision/gjk.h"
+#include "collision/manifold.h"
+#include "geometry/geometry.h"
+
+namespace lendulet {
+
+struct CollidePair {
+    const Geometry* a;
+    const Geometry* b;
+    Quat rotation_a, rotation_b;  // shape frames to world
+    Vec3 offset;                  // position of B's shape minus position of A's, world axes
+    float margin;                 // surfaces farther apart than this give no points, m
+};
+
+struct CollideSettings {
+    SimplexSolver simplex = SimplexSolver::half_space;
+};
+
+// The last separating or contact direction and feature, kept from step to step with the pair.
+struct PairCache {
+    Vec3 axis;           // world axes would turn with the bodies: frame of A
+    uint32_t feature = 0;
+    GjkCache gjk;
+};
+
+// Writes manifolds for the pair to `out` (room for `capacity`), returns how many there are. Convex pairs give at most
+// one; a convex shape against a mesh gives at most max_mesh_manifolds, the deepest first where there would be more.
+// Pairs of two meshes or planes give none. Order of a and b is the caller's: normals point from a to b.
+inline constexpr int max_mesh_manifolds = 16;
+int collide(const CollidePair& pair, PairCache& cache, const CollideSettings& settings, Manifold* out, int capacity);
+
+// Whether the two shapes overlap or touch; for triggers.
+bool overlap(const CollidePair& pair, PairCache& cache, const CollideSettings& settings);
+
+}  // namespace lendulet
