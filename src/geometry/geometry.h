@@ -19,6 +19,7 @@ enum class GeometryKind : uint8_t {
     tapered_capsule,   // size = {bottom radius, half height, top radius}
     tapered_cylinder,  // size = {bottom radius, half height, top radius}; cylinders have equal radii, cones top radius 0
     hull,
+    triangle,          // flat core of the three points at `triangle`; made for a moment while a mesh is collided
     plane,             // size = unit normal, rounding = 0, offset
     mesh,
 };
@@ -30,6 +31,7 @@ struct Geometry {
     float offset = 0.0f;     // plane: dot(normal, p) <= offset is solid
     const HullData* hull = nullptr;  // hull; for a mesh: its convex hull (null where it is flat)
     const MeshData* mesh = nullptr;
+    const Vec3* triangle = nullptr;
 };
 
 // Checks sizes and gives the geometry, or bad_extent / non_finite / bad_mesh with a sentence.
