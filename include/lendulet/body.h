@@ -31,15 +31,16 @@ struct JointId {
 
 enum class BodyType : uint8_t { fixed, kinematic, dynamic };  // `fixed` is a static body (`static` is a keyword)
 
-// How the coefficients of two touching materials become one. Where the two materials disagree, the rule that comes first
-// in this list wins (as KHR_physics_rigid_bodies orders them).
+// How the coefficients of two touching materials become one. Where the two materials disagree, the rule that comes
+// first in this list wins (as KHR_physics_rigid_bodies orders them).
 enum class CombineRule : uint8_t { average, minimum, maximum, multiply };
 
 // Surface of a collider. Unset values are the world's defaults.
 struct Material {
-    std::optional<float> static_friction;   // >= 0; a contact sticks while the tangential impulse it needs is <= this * N
-    std::optional<float> dynamic_friction;  // >= 0; otherwise it slides with this * N against the sliding direction
-    std::optional<float> restitution;       // 0 (dead) .. 1 (elastic)
+    std::optional<float>
+        static_friction{};  // >= 0; a contact sticks while the tangential impulse it needs is <= this * N
+    std::optional<float> dynamic_friction{};  // >= 0; otherwise it slides with this * N against the sliding direction
+    std::optional<float> restitution{};       // 0 (dead) .. 1 (elastic)
     CombineRule friction_combine = CombineRule::average;
     CombineRule restitution_combine = CombineRule::maximum;
 };
@@ -53,12 +54,12 @@ struct CollisionFilter {
 
 // A shape on a body.
 struct ColliderDef {
-    Shape shape;
-    Transform local;                // from the body's frame to the shape's
-    Material material;
-    CollisionFilter filter;
-    float density = 1000.0f;        // kg/m^3, > 0; ignored where the body's mass is given
-    bool is_trigger = false;        // reports overlaps, neither pushes nor adds mass
+    Shape shape{};
+    Transform local{};  // from the body's frame to the shape's
+    Material material{};
+    CollisionFilter filter{};
+    float density = 1000.0f;  // kg/m^3, > 0; ignored where the body's mass is given
+    bool is_trigger = false;  // reports overlaps, neither pushes nor adds mass
     uint64_t user_data = 0;
 };
 
@@ -66,42 +67,42 @@ struct ColliderDef {
 // fields beside it).
 struct RigidBodyDef {
     Shape shape = Sphere{};
-    Position position;              // of the body's frame, m
-    Quat orientation;
-    Vec3 velocity;                  // of the centre of mass, m/s
-    Vec3 angular_velocity;          // world frame, rad/s
-    float density = 1000.0f;        // kg/m^3, > 0
-    std::optional<float> friction;  // static and dynamic alike; unset: the world's default
-    std::optional<float> dynamic_friction;  // unset: `friction`
-    std::optional<float> restitution;
-    CollisionFilter filter;
-    std::span<const ColliderDef> colliders;
+    Position position{};  // of the body's frame, m
+    Quat orientation{};
+    Vec3 velocity{};                          // of the centre of mass, m/s
+    Vec3 angular_velocity{};                  // world frame, rad/s
+    float density = 1000.0f;                  // kg/m^3, > 0
+    std::optional<float> friction{};          // static and dynamic alike; unset: the world's default
+    std::optional<float> dynamic_friction{};  // unset: `friction`
+    std::optional<float> restitution{};
+    CollisionFilter filter{};
+    std::span<const ColliderDef> colliders{};
 
     // Mass properties; what is unset follows from shapes and densities.
-    std::optional<float> mass;                 // kg, 1e-9 .. 1e12; scales the inertia unless that is given too
-    std::optional<Vec3> centre_of_mass;        // body frame, m
-    std::optional<SymMat3> inertia;            // about the centre of mass, body axes, kg m^2
-    float linear_damping = 0.0f;    // 1/s: velocity decays as exp(-damping t)
-    float angular_damping = 0.0f;   // 1/s
+    std::optional<float> mass{};           // kg, 1e-9 .. 1e12; scales the inertia unless that is given too
+    std::optional<Vec3> centre_of_mass{};  // body frame, m
+    std::optional<SymMat3> inertia{};      // about the centre of mass, body axes, kg m^2
+    float linear_damping = 0.0f;           // 1/s: velocity decays as exp(-damping t)
+    float angular_damping = 0.0f;          // 1/s
     float gravity_factor = 1.0f;
     bool allow_sleep = true;
-    bool kinematic = false;         // moves with its given velocities, is not pushed by anything
+    bool kinematic = false;  // moves with its given velocities, is not pushed by anything
     uint64_t user_data = 0;
-    std::string_view name;          // copied; at most 255 bytes are kept
+    std::string_view name{};  // copied; at most 255 bytes are kept
 };
 
 // A body that never moves.
 struct StaticBodyDef {
     Shape shape = Box{};
-    Position position;
-    Quat orientation;
-    std::optional<float> friction;
-    std::optional<float> dynamic_friction;
-    std::optional<float> restitution;
-    CollisionFilter filter;
-    std::span<const ColliderDef> colliders;
+    Position position{};
+    Quat orientation{};
+    std::optional<float> friction{};
+    std::optional<float> dynamic_friction{};
+    std::optional<float> restitution{};
+    CollisionFilter filter{};
+    std::span<const ColliderDef> colliders{};
     uint64_t user_data = 0;
-    std::string_view name;
+    std::string_view name{};
 };
 
 class World;
@@ -114,16 +115,16 @@ class StaticBodyRef {
 public:
     BodyId id() const;
     BodyType type() const;
-    Position position() const;         // of the body's frame, m
-    Quat orientation() const;          // body frame to world
+    Position position() const;  // of the body's frame, m
+    Quat orientation() const;   // body frame to world
     Quat rotation() const { return orientation(); }
     Mat3 rotation_matrix() const;
-    std::string_view name() const;     // empty where none was given
+    std::string_view name() const;  // empty where none was given
     uint64_t user_data() const;
     int collider_count() const;
     const Shape& shape(int collider = 0) const;
     ColliderId collider(int index = 0) const;
-    Aabb aabb() const;                 // of all colliders, without margin
+    Aabb aabb() const;  // of all colliders, without margin
 
 protected:
     friend class World;
@@ -135,16 +136,16 @@ protected:
 // A body that moves. State is momentum p and angular momentum L; velocities are derived.
 class RigidBodyRef : public StaticBodyRef {
 public:
-    float mass() const;                        // kg; infinity for a kinematic body
-    float inverse_mass() const;                // 1/kg; 0 for a kinematic body
-    Position centre_of_mass() const;           // world, m
-    SymMat3 inverse_inertia() const;           // world axes, about the centre of mass, 1/(kg m^2)
-    Vec3 momentum() const;                     // p, kg m/s
-    Vec3 angular_momentum() const;             // L about the centre of mass, world axes, kg m^2/s
-    Vec3 velocity() const;                     // v = p / m, of the centre of mass, m/s
-    Vec3 angular_velocity() const;             // w = R I^-1 R^T L, world axes, rad/s
-    float kinetic_energy() const;              // J
-    float potential_energy() const;            // -m g.x, zero at the world's origin, J
+    float mass() const;               // kg; infinity for a kinematic body
+    float inverse_mass() const;       // 1/kg; 0 for a kinematic body
+    Position centre_of_mass() const;  // world, m
+    SymMat3 inverse_inertia() const;  // world axes, about the centre of mass, 1/(kg m^2)
+    Vec3 momentum() const;            // p, kg m/s
+    Vec3 angular_momentum() const;    // L about the centre of mass, world axes, kg m^2/s
+    Vec3 velocity() const;            // v = p / m, of the centre of mass, m/s
+    Vec3 angular_velocity() const;    // w = R I^-1 R^T L, world axes, rad/s
+    float kinetic_energy() const;     // J
+    float potential_energy() const;   // -m g.x, zero at the world's origin, J
     float energy() const { return kinetic_energy() + potential_energy(); }
 
     // Velocity of the body's material at a world point: v + w x (point - x). (thesis 3.3.2)
@@ -159,12 +160,12 @@ public:
     Status set_angular_velocity(Vec3 angular_velocity);
     Status set_momentum(Vec3 momentum);
     Status set_angular_momentum(Vec3 angular_momentum);
-    Status apply_impulse(Vec3 impulse, Position point);    // N s at a world point: p += J, L += (point - x) x J
-    Status apply_impulse(Vec3 impulse);                    // at the centre of mass
-    Status apply_angular_impulse(Vec3 angular_impulse);    // N m s
-    Status apply_force(Vec3 force, Position point);        // N, held during the next step
+    Status apply_impulse(Vec3 impulse, Position point);  // N s at a world point: p += J, L += (point - x) x J
+    Status apply_impulse(Vec3 impulse);                  // at the centre of mass
+    Status apply_angular_impulse(Vec3 angular_impulse);  // N m s
+    Status apply_force(Vec3 force, Position point);      // N, held during the next step
     Status apply_force(Vec3 force);
-    Status apply_torque(Vec3 torque);                      // N m, held during the next step
+    Status apply_torque(Vec3 torque);  // N m, held during the next step
     // Kinematic bodies: velocities such that the body arrives at this pose after a step of `dt`.
     Status move_to(Position position, Quat orientation, float dt);
 

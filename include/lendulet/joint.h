@@ -38,29 +38,29 @@ enum class JointType : uint8_t { fixed, ball, hinge, slider };
 // sliders and the twist axis of ball joints. Use the joint_at helper to give one frame in the world instead.
 struct JointDef {
     JointType type = JointType::fixed;
-    BodyId body_a, body_b;         // not both static; A may be static or kinematic, or B
-    Transform frame_a, frame_b;    // joint frame in each body's frame
+    BodyId body_a{}, body_b{};       // not both static; A may be static or kinematic, or B
+    Transform frame_a{}, frame_b{};  // joint frame in each body's frame
     // hinge: angle about x, rad in (-pi, pi]; slider: travel along x, m; others: ignored
-    Limit limit;
-    Motor motor;                   // hinge and slider
-    Spring spring;                 // hinge and slider
+    Limit limit{};
+    Motor motor{};    // hinge and slider
+    Spring spring{};  // hinge and slider
     // ball: half angle of the cone in which B's x axis stays about A's, rad; > pi: free
     float swing_limit = 4.0f;
-    Limit twist_limit;             // ball: turn of B about the x axis, rad
+    Limit twist_limit{};             // ball: turn of B about the x axis, rad
     bool collide_connected = false;  // whether the two bodies' colliders still meet
     uint64_t user_data = 0;
-    std::string_view name;
+    std::string_view name{};
 };
 
 // What a joint does at present.
 struct JointState {
     JointType type;
     BodyId body_a, body_b;
-    float position = 0.0f;         // hinge: angle, rad; slider: travel, m
-    float velocity = 0.0f;         // rad/s or m/s
-    Vec3 linear_error;             // gap of the locked linear rows, world axes, m
-    float angular_error = 0.0f;    // rad
-    Vec3 force, torque;            // mean over the last step on body B at the joint frame, world axes, N and N m
+    float position = 0.0f;       // hinge: angle, rad; slider: travel, m
+    float velocity = 0.0f;       // rad/s or m/s
+    Vec3 linear_error;           // gap of the locked linear rows, world axes, m
+    float angular_error = 0.0f;  // rad
+    Vec3 force, torque;          // mean over the last step on body B at the joint frame, world axes, N and N m
 };
 
 }  // namespace lendulet

@@ -27,9 +27,9 @@ struct AllocatorHook {
     void (*free)(void* user, void* memory, size_t bytes, size_t alignment) = nullptr;
 };
 
-// Runs the world's loops on the user's own threads: must call run(context, begin, end, worker) over disjoint ranges that
-// cover [0, count), with worker < workers and never the same worker number at the same time, and return when all are
-// done. Results never depend on how the range was cut.
+// Runs the world's loops on the user's own threads: must call run(context, begin, end, worker) over disjoint ranges
+// that cover [0, count), with worker < workers and never the same worker number at the same time, and return when all
+// are done. Results never depend on how the range was cut.
 struct TaskHook {
     void* user = nullptr;
     int workers = 0;
@@ -39,20 +39,20 @@ struct TaskHook {
 
 // Every setting of a world; WorldBuilder fills it in.
 struct WorldConfig {
-    Vec3 gravity{0.0f, -9.81f, 0.0f};   // m/s^2
-    int solver_steps = 8;               // substeps per step, 1 .. 64
+    Vec3 gravity{0.0f, -9.81f, 0.0f};      // m/s^2
+    int solver_steps = 8;                  // substeps per step, 1 .. 64
     float rigid_separation_speed = 3.0f;   // m/s: fastest that overlap between two rigid bodies is undone
     float static_separation_speed = 3.0f;  // m/s: the same against static and kinematic bodies
-    float friction = 0.5f;              // default static and dynamic coefficient
-    float restitution = 0.0f;           // default bounciness, 0 .. 1
+    float friction = 0.5f;                 // default static and dynamic coefficient
+    float restitution = 0.0f;              // default bounciness, 0 .. 1
     BroadPhaseType broad_phase = BroadPhaseType::rtree_omt;
     SimplexSolver simplex = SimplexSolver::half_space;
     Integrator integrator = Integrator::momentum;
-    int workers = 1;                    // threads including the caller's, 1 .. 64
-    int width = 0;                      // SIMD lanes 1, 4, 8 or 16; 0: the widest this machine has
+    int workers = 1;  // threads including the caller's, 1 .. 64
+    int width = 0;    // SIMD lanes 1, 4, 8 or 16; 0: the widest this machine has
     bool allow_sleep = true;
-    AllocatorHook allocator;
-    TaskHook tasks;
+    AllocatorHook allocator{};
+    TaskHook tasks{};
 };
 
 // One point of a contact between two colliders.
@@ -66,11 +66,11 @@ struct ContactPoint {
 struct Contact {
     BodyId body_a, body_b;
     ColliderId collider_a, collider_b;
-    Vec3 normal;             // unit, from A to B
-    Vec3 friction_impulse;   // on B, of the last substep, N s
+    Vec3 normal;            // unit, from A to B
+    Vec3 friction_impulse;  // on B, of the last substep, N s
     int point_count;
     ContactPoint points[4];
-    int32_t triangle;        // index of the mesh triangle, -1 where none is involved
+    int32_t triangle;  // index of the mesh triangle, -1 where none is involved
 };
 
 // Two colliders, one of them a trigger, that overlap.
@@ -101,9 +101,9 @@ struct StepStatistics {
     double stage_ms[static_cast<int>(Stage::count)];
     double total_ms;
     int bodies, awake_bodies, pairs, manifolds, contact_points, colours, overflow_manifolds, joints;
-    float max_penetration;   // deepest overlap after the step, m
-    int capped_bodies;       // bodies whose speed was cut to the limit
-    int contained_bodies;    // bodies whose state went non-finite, was put back and stopped
+    float max_penetration;  // deepest overlap after the step, m
+    int capped_bodies;      // bodies whose speed was cut to the limit
+    int contained_bodies;   // bodies whose state went non-finite, was put back and stopped
     size_t bytes_per_body, bytes_per_manifold;
 };
 
@@ -130,11 +130,13 @@ public:
     Status remove_joint(JointId id);
     Status set_motor(JointId id, Motor motor);
     // A joint's frames on its two bodies from one frame in the world (x axis along `axis`).
-    Result<JointDef> joint_at(JointType type, BodyId a, BodyId b, Position anchor, Vec3 axis = {1.0f, 0.0f, 0.0f}) const;
+    Result<JointDef> joint_at(JointType type, BodyId a, BodyId b, Position anchor,
+                              Vec3 axis = {1.0f, 0.0f, 0.0f}) const;
 
     bool alive(BodyId id) const;
     bool alive(JointId id) const;
-    // Views; a stale id, or get() on a static body, ends the program with a sentence: ask alive() where it may be stale.
+    // Views; a stale id, or get() on a static body, ends the program with a sentence: ask alive() where it may be
+    // stale.
     RigidBodyRef get(BodyId id);
     const RigidBodyRef get(BodyId id) const;
     StaticBodyRef get_static(BodyId id) const;  // any body
@@ -147,13 +149,13 @@ public:
     Status set_gravity(Vec3 gravity);
     const WorldConfig& config() const;
     const StepStatistics& statistics() const;
-    double time() const;       // seconds simulated
+    double time() const;  // seconds simulated
     uint64_t step_count() const;
 
     // --- iteration; all in creation order
     int body_count() const;
     int joint_count() const;
-    BodyId body(int index) const;      // 0 .. body_count() - 1
+    BodyId body(int index) const;  // 0 .. body_count() - 1
     JointId joint_id(int index) const;
     // Contacts of the last step, ordered by colliders: the same for every broad phase and number of workers.
     int contact_count() const;
@@ -162,8 +164,9 @@ public:
     // Calls visit(AabbView) for every leaf and node box of the broad phase.
     template <class Visit>
     void for_each_aabb(Visit&& visit) const {
-        visit_aabbs([](void* context, const AabbView& view) { (*static_cast<std::remove_reference_t<Visit>*>(context))(view); },
-                    const_cast<void*>(static_cast<const void*>(&visit)));
+        visit_aabbs(
+            [](void* context, const AabbView& view) { (*static_cast<std::remove_reference_t<Visit>*>(context))(view); },
+            const_cast<void*>(static_cast<const void*>(&visit)));
     }
     // Colliders whose bounding boxes overlap `box`, at most `capacity`, in collider order; returns how many there are.
     int query_boxes(const Aabb& box, ColliderId* out, int capacity) const;

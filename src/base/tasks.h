@@ -19,7 +19,8 @@ public:
     };
 
     // `workers` threads in all, the calling one included; with a hook no threads are started.
-    explicit TaskPool(int workers, Hook hook = {});
+    explicit TaskPool(int workers) : TaskPool(workers, Hook{}) {}
+    TaskPool(int workers, Hook hook);
     ~TaskPool();
     TaskPool(const TaskPool&) = delete;
     TaskPool& operator=(const TaskPool&) = delete;
