@@ -1,5 +1,5 @@
-// A scene: a world with what drives it. Built-in scenes and loaded files alike; used by the command line program, tests,
-// benchmarks and viewers under one name.
+// A scene: a world with what drives it. Built-in scenes and loaded files alike; used by the command line program,
+// tests, benchmarks and viewers under one name.
 #pragma once
 
 #include <functional>
@@ -17,10 +17,10 @@ using Configure = std::function<void(WorldBuilder&)>;
 struct Scene {
     World world;
     std::string name;
-    float dt = 1.0f / 60.0f;                       // the step it is meant for, s
-    int steps = 600;                               // how long it is worth watching
+    float dt = 1.0f / 60.0f;                            // the step it is meant for, s
+    int steps = 600;                                    // how long it is worth watching
     std::function<void(World&, int step)> before_step;  // may be empty: spawns, kinematic motion
-    std::vector<std::string> warnings;             // of loading
+    std::vector<std::string> warnings;                  // of loading
 };
 
 struct SceneInfo {

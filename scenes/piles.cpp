@@ -1,0 +1,87 @@
+// Piles: bodies turned at random, dropped in layers into an open container or onto hills of triangles.
+#include "scenes/builders.h"
+#include "scenes/parts.h"
+
+namespace lendulet::scenes {
+namespace {
+
+// Bodies along each side of a layer: ten layers up to 4000 bodies (10 x 10 for 1000, 20 x 20 for 4000), then layers and
+// sides grow together up to 32 x 32 in 16 layers for 16000.
+int pile_side(int count) {
+    int side = 1;
+    while (count <= 4000 ? side * side * 10 < count : side < 20 || int64_t{125} * side * side < int64_t{8} * count)
+        ++side;
+    return side;
+}
+
+SceneDescription pile(Kind kind, int count, float spacing) {
+    SceneDescription scene;
+    scene.steps = 200;
+    Random random;
+    Props props(random);
+    int side = pile_side(count), layer = side * side;
+    float inner = 0.5f * static_cast<float>(side) * spacing;
+    float layers = static_cast<float>((count + layer - 1) / layer);
+    add_container(scene, inner, maximum(6.0f, layers * spacing + 4.0f));
+    float jitter = 0.02f * spacing;
+    for (int i = 0; i < count; ++i) {
+        float x = static_cast<float>(i % side) + 0.5f, y = static_cast<float>(i / layer);
+        float z = static_cast<float>(i / side % side) + 0.5f;
+        Position position;
+        position.x = x * spacing - inner + random.range(-jitter, jitter);
+        position.y = 1.0f + y * spacing + random.range(-jitter, jitter);
+        position.z = z * spacing - inner + random.range(-jitter, jitter);
+        add_body(scene, props.shape(kind, i), position).orientation = random.rotation();
+    }
+    return scene;
+}
+
+// Long hills with short waves on them, m.
+float terrain_height(float x, float z) {
+    float hills = 3.0f * sin_cos(0.15f * x).sin * sin_cos(0.15f * z).cos;
+    return hills + 0.3f * sin_cos(1.1f * x).sin * sin_cos(0.9f * z).sin;
+}
+
+// A square of `cells` x `cells` quads of two triangles each, centred on the origin.
+void add_terrain(SceneDescription& scene, uint32_t cells, float cell) {
+    std::vector<Vec3> vertices;
+    std::vector<uint32_t> indices;
+    float half = 0.5f * static_cast<float>(cells) * cell;
+    for (uint32_t row = 0; row <= cells; ++row)
+        for (uint32_t column = 0; column <= cells; ++column) {
+            float x = static_cast<float>(column) * cell - half, z = static_cast<float>(row) * cell - half;
+            vertices.push_back({x, terrain_height(x, z), z});
+        }
+    for (uint32_t row = 0; row < cells; ++row)
+        for (uint32_t column = 0; column < cells; ++column) {
+            uint32_t a = row * (cells + 1) + column, b = a + 1, c = a + cells + 1, d = c + 1;
+            for (uint32_t corner : {a, c, b, b, c, d}) indices.push_back(corner);
+        }
+    TriangleMesh mesh = TriangleMesh::from_triangles(vertices, indices).value();
+    add_static(scene, mesh, {}).name = "terrain";
+    scene.meshes.push_back({std::move(vertices), std::move(indices), std::move(mesh)});
+}
+
+}  // namespace
+
+SceneDescription box_pile(int count) { return pile(Kind::box, count, 1.8f); }
+SceneDescription sphere_pile(int count) { return pile(Kind::sphere, count, 1.1f); }
+SceneDescription capsule_pile(int count) { return pile(Kind::capsule, count, 1.45f); }
+SceneDescription convex_pile(int count) { return pile(Kind::convex, count, 1.25f); }
+SceneDescription mixed_pile(int count) { return pile(Kind::mixed, count, 1.8f); }
+
+SceneDescription mesh_terrain(int count) {
+    SceneDescription scene;
+    scene.steps = 240;
+    add_terrain(scene, 224, 0.5f);
+    Random random;
+    Props props(random);
+    for (int i = 0; i < count; ++i) {
+        Position position{(static_cast<float>(i % 32) - 15.5f) * 2.0f, 5.0f + 2.0f * static_cast<float>(i / 1024),
+                          (static_cast<float>(i / 32 % 32) - 15.5f) * 2.0f};
+        add_body(scene, props.shape(Kind::mixed, i), position).orientation = random.rotation();
+    }
+    return scene;
+}
+
+}  // namespace lendulet::scenes
