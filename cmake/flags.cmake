@@ -1,11 +1,14 @@
 # Flags shared by everything of ours. Floating point is IEEE to the letter: results are the same bits for every compiler,
-# SIMD width and machine, so no contraction into fused multiply-adds and no fast-math.
+# SIMD width and machine, so products and sums are never contracted and no rule of arithmetic is relaxed.
 add_library(lendulet_flags INTERFACE)
 target_compile_options(lendulet_flags INTERFACE
     -Wall -Wextra -Wno-psabi -Wno-ignored-attributes
     -ffp-contract=off -fno-math-errno -fno-trapping-math)
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     target_compile_options(lendulet_flags INTERFACE -Wno-missing-braces -Wno-unused-const-variable)
+endif()
+if(LENDULET_WARNINGS_ARE_ERRORS)
+    target_compile_options(lendulet_flags INTERFACE -Werror)
 endif()
 if(LENDULET_ASSERTIONS)
     target_compile_definitions(lendulet_flags INTERFACE LENDULET_ASSERTIONS)

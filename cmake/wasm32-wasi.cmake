@@ -1,0 +1,13 @@
+# WebAssembly without a browser: clang-22 with Debian's wasi-libc and libc++ for wasm32. No threads, no exceptions.
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_SYSTEM_PROCESSOR wasm32)
+set(CMAKE_CXX_COMPILER clang++-22)
+set(CMAKE_CXX_COMPILER_TARGET wasm32-wasi)
+set(CMAKE_AR /usr/bin/llvm-ar-22)
+set(CMAKE_RANLIB /usr/bin/llvm-ranlib-22)
+set(CMAKE_CXX_FLAGS_INIT "-msimd128 -fno-exceptions -fno-rtti -Wno-deprecated")
+set(CMAKE_EXE_LINKER_FLAGS_INIT "--no-wasm-opt -Wl,--strip-all -Wl,-z,stack-size=1048576")
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
