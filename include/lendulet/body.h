@@ -123,6 +123,7 @@ public:
     uint64_t user_data() const;
     int collider_count() const;
     const Shape& shape(int collider = 0) const;
+    Transform collider_pose(int collider = 0) const;  // from the body's frame to the shape's
     ColliderId collider(int index = 0) const;
     Aabb aabb() const;  // of all colliders, without margin
 
