@@ -58,6 +58,14 @@ LENDULET_FORCE_INLINE void transpose4(F& a, F& b, F& c, F& d) {
 
 LENDULET_FORCE_INLINE Float4 load_quad(const float* p) { return load_wide<Float4>(p); }
 
+#if defined(__AVX512F__)
+inline constexpr int native_lanes = 16;
+#elif defined(__AVX__)
+inline constexpr int native_lanes = 8;
+#else
+inline constexpr int native_lanes = 4;
+#endif
+
 }  // namespace detail
 
 // out[k] lane i = base[index[i] * stride + offset + k], k = 0 .. 3; stride and offset in floats.
@@ -68,6 +76,14 @@ LENDULET_FORCE_INLINE void gather4(const float* base, const int32_t* index, int 
     if constexpr (W == 1) {
         const float* p = base + static_cast<ptrdiff_t>(index[0]) * stride + offset;
         for (int k = 0; k < 4; ++k) out[k] = p[k];
+    } else if constexpr (W > native_lanes) {  // wider than this unit's registers: by native quads, through memory
+        float lanes[4][W];
+        for (int i = 0; i < W; i += 4) {
+            Float4 q[4] = {quad(i), quad(i + 1), quad(i + 2), quad(i + 3)};
+            transpose4(q[0], q[1], q[2], q[3]);
+            for (int k = 0; k < 4; ++k) store_wide(lanes[k] + i, q[k]);
+        }
+        for (int k = 0; k < 4; ++k) out[k] = load_wide<Wide<float, W>>(lanes[k]);
     } else {
         for (int k = 0; k < 4; ++k) {
             if constexpr (W == 4) out[k] = quad(k);
@@ -85,6 +101,15 @@ LENDULET_FORCE_INLINE void scatter4(float* base, const int32_t* index, int strid
     if constexpr (W == 1) {
         float* p = base + static_cast<ptrdiff_t>(index[0]) * stride + offset;
         for (int k = 0; k < 4; ++k) p[k] = in[k];
+    } else if constexpr (W > native_lanes) {
+        float lanes[4][W];
+        for (int k = 0; k < 4; ++k) store_wide(lanes[k], in[k]);
+        for (int i = 0; i < W; i += 4) {
+            Float4 q[4];
+            for (int k = 0; k < 4; ++k) q[k] = load_quad(lanes[k] + i);
+            transpose4(q[0], q[1], q[2], q[3]);
+            for (int k = 0; k < 4; ++k) store_wide(base + static_cast<ptrdiff_t>(index[i + k]) * stride + offset, q[k]);
+        }
     } else {
         Wide<float, W> r[4] = {in[0], in[1], in[2], in[3]};
         transpose4(r[0], r[1], r[2], r[3]);

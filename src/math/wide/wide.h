@@ -62,6 +62,10 @@ template <class M, class F>
 LENDULET_FORCE_INLINE Vec3T<F> select(M mask, Vec3T<F> a, Vec3T<F> b) {
     return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
+template <class M, class F>
+LENDULET_FORCE_INLINE QuatT<F> select(M mask, QuatT<F> a, QuatT<F> b) {
+    return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z), select(mask, a.w, b.w)};
+}
 
 // The x86 instructions are exactly these selections, NaN and -0 included.
 template <WideFloat F>

@@ -1,0 +1,41 @@
+// A contact manifold as it lives from step to step: 192 bytes in quads, so that wide kernels load and store it by
+// transposes. The narrow phase fills it, the solver reads it into rows and writes impulses back.
+#pragma once
+
+#include <cstdint>
+
+namespace lendulet {
+
+inline constexpr float far_separation = 1e9f;  // of points that are not there: never pushes, and 0 * it is 0
+
+struct ContactPointRecord {
+    float position[3];  // half way between the surfaces, from A's centre of mass, world axes, m
+    float separation;   // m, negative = overlap
+};
+
+struct alignas(64) ContactRecord {
+    float normal[3];           // unit, from A to B
+    float static_friction;
+    float normal_impulse[4];   // of the last substep, N s
+    float friction_impulse[3]; // on B at the centre of the points, world axes, N s
+    float twist_impulse;       // on B about the normal, N m s
+    int32_t body_a, body_b;    // solver bodies; where only one of them is moved by constraints, it is B
+    int32_t point_count;
+    float dynamic_friction;
+    ContactPointRecord points[4];
+    float radius_a, radius_b;  // sweep radii of the surfaces at the points, see Manifold
+    float follow;              // on which body the points ride, see Manifold
+    float restitution;
+    float arm_offset[3];       // B's centre of mass minus A's, m
+    float separation_speed;    // fastest that overlap is undone, m/s
+    uint32_t id[4];            // feature names of the points
+    uint32_t key;              // name among the manifolds of the pair
+    int32_t triangle;
+    uint32_t flags;
+    uint32_t pair;             // index of the pair in this step's pair list
+};
+static_assert(sizeof(ContactRecord) == 192);
+
+inline constexpr uint32_t contact_flipped = 1;  // A and B are exchanged against the order of the two colliders
+
+}  // namespace lendulet

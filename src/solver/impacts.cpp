@@ -1,0 +1,121 @@
+#include "solver/impacts.h"
+
+#include "lendulet/math.h"
+
+namespace lendulet {
+namespace {
+
+constexpr int max_sweeps = 8;
+// Points closer than this count as touching already: positions a metre from the body's centre resolve 1e-7 m.
+constexpr float touching = 1e-6f;
+
+Vec3 load(const float* p) { return {p[0], p[1], p[2]}; }
+void store(float* p, Vec3 v) { p[0] = v.x, p[1] = v.y, p[2] = v.z; }
+void add(float* p, Vec3 v) { p[0] += v.x, p[1] += v.y, p[2] += v.z; }
+
+struct Side {
+    BodyState* state;
+    BodyMotion* motion;
+    SymMat3 inverse_inertia;
+    Vec3 v, w, arm;
+
+    Side(SolverBodies& bodies, int32_t i) : state(&bodies.state[i]), motion(&bodies.motion[i]) {
+        const float* m = bodies.inertia[i].inverse;
+        inverse_inertia = {m[0], m[1], m[2], m[3], m[4], m[5]};
+        v = load(state->v);
+        w = load(state->w);
+    }
+    Quat rotation() const { return {state->dq[0], state->dq[1], state->dq[2], state->dq[3]}; }
+    bool movable() const { return state->inverse_mass > 0.0f; }
+    Vec3 acceleration() const { return movable() ? load(motion->acceleration) : Vec3{}; }
+    Vec3 velocity() const { return v + cross(w, arm); }
+    // T^-1(u), thesis 3.3.2: how much the point's velocity along u changes per unit impulse.
+    float effectiveness(Vec3 u) const {
+        Vec3 r = cross(arm, u);
+        return state->inverse_mass + dot(r, inverse_inertia * r);
+    }
+    // The impulse acts after `time`: the body is moved so that from then on it is where the new velocity leads.
+    void apply(Vec3 impulse, float time) {
+        if (!movable()) return;
+        Vec3 dv = state->inverse_mass * impulse, dL = cross(arm, impulse), dw = inverse_inertia * dL;
+        v += dv;
+        w += dw;
+        store(state->v, v);
+        store(state->w, w);
+        // Not a change that the warm start repeats, nor one that the drift expects to go on.
+        add(motion->v_ref, dv);
+        add(motion->v_start, dv);
+        add(motion->w_ref, dw);
+        add(motion->L_start, dL);
+        add(motion->angular_momentum, dL);
+        add(state->dp, -time * dv);
+        Vec3 turn = (-0.5f * time) * dw;
+        Quat q = rotation();
+        Quat d = normalize(Quat{turn.x, turn.y, turn.z, 1.0f} * q);
+        state->dq[0] = d.x, state->dq[1] = d.y, state->dq[2] = d.z, state->dq[3] = d.w;
+    }
+};
+
+// One point of a manifold; true where it bounced.
+bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPointRecord& point, const SubstepConstants& k) {
+    Side a(bodies, r.body_a), b(bodies, r.body_b);
+    Vec3 n = load(r.normal), ra0 = load(point.position), offset = load(r.arm_offset), rb0 = ra0 - offset;
+    float half_gap = 0.5f * point.separation;
+    // Separation now: core points turn with their bodies, swept surfaces do not.
+    Vec3 core_a = ra0 - (half_gap + r.radius_a) * n, core_b = rb0 + (half_gap + r.radius_b) * n;
+    Vec3 moved = load(b.state->dp) - load(a.state->dp);
+    Vec3 turned = (rotate(b.rotation(), core_b) - core_b) - (rotate(a.rotation(), core_a) - core_a);
+    float gap = maximum(point.separation + dot(n, moved + turned), 0.0f);
+    // The world point where both get the impulse, on the surface of the body that it rides on.
+    Vec3 slid = moved - dot(moved, n) * n;
+    b.arm = rb0 + half_gap * n - (1.0f - r.follow) * slid;
+    a.arm = b.arm + offset + moved - gap * n;
+
+    Vec3 relative = b.velocity() - a.velocity();
+    float approach = dot(relative, n), acceleration = dot(b.acceleration() - a.acceleration(), n);
+    // gap + approach t + acceleration t^2 / 2 = 0, the earlier root; stable form.
+    float discriminant = approach * approach - 2.0f * acceleration * gap;
+    if (!(discriminant > 0.0f)) return false;
+    float speed = square_root(discriminant), time = 0.0f;
+    if (gap > touching) {
+        float denominator = speed - approach;
+        if (!(denominator > 0.0f)) return false;
+        time = 2.0f * gap / denominator;
+    } else if (approach >= 0.0f) {
+        return false;
+    }
+    if (time > k.h || speed < k.bounce_speed) return false;
+
+    float normal_impulse = (1.0f + r.restitution) * speed / (a.effectiveness(n) + b.effectiveness(n));
+    Vec3 impulse = normal_impulse * n, slip = relative - approach * n;
+    float slide = length(slip);
+    if (slide > 1e-9f) {
+        Vec3 u = (1.0f / slide) * slip;
+        float stopping = slide / (a.effectiveness(u) + b.effectiveness(u));
+        // Static and sliding friction on the whole normal impulse (thesis 3.3.4, magnitudes as in THESIS-NOTES).
+        float friction = stopping <= r.static_friction * normal_impulse ? stopping : r.dynamic_friction * normal_impulse;
+        impulse -= friction * u;
+    }
+    a.apply(-impulse, time);
+    b.apply(impulse, time);
+    return true;
+}
+
+}  // namespace
+
+bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, const uint32_t* list, int count,
+                     const SubstepConstants& k) {
+    bool any = false;
+    for (int sweep = 0; sweep < max_sweeps; ++sweep) {
+        bool bounced = false;
+        for (int i = 0; i < count; ++i) {
+            const ContactRecord& r = records[list[i]];
+            for (int j = 0; j < r.point_count; ++j) bounced |= bounce_point(bodies, r, r.points[j], k);
+        }
+        any |= bounced;
+        if (!bounced) break;
+    }
+    return any;
+}
+
+}  // namespace lendulet

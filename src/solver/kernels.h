@@ -1,0 +1,58 @@
+// The wide kernels of the solver as a table of functions, one table a SIMD width. One source (kernels.inl) is compiled
+// once per instruction set; the table is chosen when a world is built. All widths give the same bits: constraints of one
+// colour share no body, so how they are packed into lanes cannot matter.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "solver/bodies.h"
+#include "solver/contact.h"
+
+namespace lendulet {
+
+struct SubstepConstants {
+    float h;              // substep, s
+    float inverse_h;
+    float bias_rate;      // share of the overlap undone in a substep, divided by h
+    float leak;           // share of the accumulated normal impulse given up in the biased pass
+    float bounce_speed;   // slower impacts do not bounce, m/s
+};
+
+// Manifolds of one colour and one size class: `count` of them, named by `order`, in rows from `rows` on.
+struct ContactGroup {
+    int points;            // rows have room for 1, 2 or 4
+    bool fixed_a;          // A is static or kinematic in all of them: not stored
+    int32_t filler;        // reserved body for the empty lanes of the last block
+    int count;
+    const uint32_t* order; // indices of the records
+    std::byte* rows;
+};
+
+struct SolverKernels {
+    int width;
+    size_t row_bytes[3];   // of one block of `width` manifolds with 1, 2, 4 points
+
+    // Contacts: blocks [begin, end) of a group.
+    void (*prepare)(const ContactGroup&, const ContactRecord*, const SolverBodies&, int begin, int end);
+    void (*warm_start)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
+    void (*solve)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
+    // As solve, where bodies were displaced since the last relax or prepare.
+    void (*solve_moved)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
+    void (*relax)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
+    void (*store)(const ContactGroup&, ContactRecord*, int begin, int end);
+
+    // Bodies [begin, end), both multiples of 16.
+    void (*kick)(SolverBodies&, const SubstepConstants&, bool first, int begin, int end);
+    void (*drift)(SolverBodies&, const SubstepConstants&, int begin, int end);
+    void (*settle)(SolverBodies&, int begin, int end);
+};
+
+inline int row_class(int points) { return points > 2 ? 2 : points - 1; }
+
+// The kernels for 1, 4, 8 or 16 lanes in the best instructions this machine has for that width.
+const SolverKernels& solver_kernels(int width);
+// The width to use where the user has no wish: the widest with instructions of its own.
+int native_width();
+
+}  // namespace lendulet

@@ -1,0 +1,49 @@
+// The one source of all wide kernels. Included by one unit per instruction set, which defines LENDULET_KERNEL_SPACE: the
+// namespace that keeps the copies apart, so that the linker can never give a unit the code of a wider machine.
+#include "math/wide/gather.h"
+#include "math/wide/wide.h"
+#include "solver/kernels.h"
+
+namespace lendulet::LENDULET_KERNEL_SPACE {
+namespace {
+
+#include "solver/contact_rows.inl"
+
+#include "solver/body_rows.inl"
+
+template <int W>
+void prepare_group(const ContactGroup& g, const ContactRecord* records, const SolverBodies& bodies, int begin, int end) {
+    if (g.points == 1) prepare_rows<W, 1>(g, records, bodies, begin, end);
+    else if (g.points == 2) prepare_rows<W, 2>(g, records, bodies, begin, end);
+    else prepare_rows<W, 4>(g, records, bodies, begin, end);
+}
+template <int W, Pass pass>
+void pass_group(const ContactGroup& g, SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
+    if (g.points == 1) run_pass<W, 1, pass>(g, bodies, k, begin, end);
+    else if (g.points == 2) run_pass<W, 2, pass>(g, bodies, k, begin, end);
+    else run_pass<W, 4, pass>(g, bodies, k, begin, end);
+}
+template <int W>
+void store_group(const ContactGroup& g, ContactRecord* records, int begin, int end) {
+    if (g.points == 1) store_rows<W, 1>(g, records, begin, end);
+    else if (g.points == 2) store_rows<W, 2>(g, records, begin, end);
+    else store_rows<W, 4>(g, records, begin, end);
+}
+
+template <int W>
+constexpr SolverKernels make_kernels() {
+    return {W,
+            {sizeof(ContactRow<W, 1>), sizeof(ContactRow<W, 2>), sizeof(ContactRow<W, 4>)},
+            prepare_group<W>,
+            pass_group<W, Pass::warm_start>,
+            pass_group<W, Pass::solve>,
+            pass_group<W, Pass::solve_moved>,
+            pass_group<W, Pass::relax>,
+            store_group<W>,
+            kick_bodies<W>,
+            drift_bodies<W>,
+            settle_bodies<W>};
+}
+
+}  // namespace
+}  // namespace lendulet::LENDULET_KERNEL_SPACE

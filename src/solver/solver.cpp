@@ -1,0 +1,81 @@
+#include "solver/solver.h"
+
+#include "solver/impacts.h"
+
+namespace lendulet {
+namespace {
+
+constexpr int bodies_per_task = 256;   // bodies in a chunk of a parallel loop; a multiple of 16
+constexpr int contacts_per_task = 128; // manifolds in a chunk, whatever the width
+
+// Calls run(begin, end) on ranges of bodies, aligned to blocks of 16.
+template <class Run>
+void for_each_body_block(TaskPool& tasks, const SolverBodies& bodies, Run&& run) {
+    int blocks = (bodies.count + 15) / 16;
+    tasks.for_each(blocks, bodies_per_task / 16, [&](int begin, int end, int) { run(begin * 16, end * 16); });
+}
+
+}  // namespace
+
+SubstepConstants substep_constants(const SolverSettings& settings) {
+    SubstepConstants k;
+    k.h = settings.dt / static_cast<float>(settings.substeps);
+    k.inverse_h = 1.0f / k.h;
+    k.bias_rate = contact_bias * k.inverse_h;
+    k.leak = contact_leak;
+    k.bounce_speed = bounce_threshold_substeps * settings.gravity * k.h + 1e-3f;
+    return k;
+}
+
+template <class Run>
+void Solver::for_each_group(TaskPool& tasks, Run&& run) {
+    for (int i = 0; i < schedule_.groups.count(); ++i) {
+        const ContactGroup& g = schedule_.groups[static_cast<size_t>(i)];
+        if (i >= schedule_.first_overflow_group) {
+            run(scalar_, g, 0, g.count);
+            continue;
+        }
+        int blocks = (g.count + kernels_.width - 1) / kernels_.width;
+        int grain = contacts_per_task / kernels_.width;
+        tasks.for_each(blocks, grain, [&](int begin, int end, int) { run(kernels_, g, begin, end); });
+    }
+}
+
+void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, int count) {
+    schedule_.build(records, count, bodies, kernels_, scalar_);
+    bouncing_.clear();
+    for (int i = 0; i < count; ++i)
+        if (records[i].restitution > 0.0f) bouncing_.push_back(static_cast<uint32_t>(i));
+    for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
+        kernels.prepare(g, records, bodies, begin, end);
+    });
+}
+
+void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records) {
+    const SubstepConstants k = substep_constants(settings);
+    for (int substep = 0; substep < settings.substeps; ++substep) {
+        const bool first = substep == 0;
+        bool moved = resolve_impacts(bodies, records, bouncing_.data(), bouncing_.count(), k);
+        for_each_body_block(tasks, bodies, [&](int begin, int end) { kernels_.kick(bodies, k, first, begin, end); });
+        if (first)
+            for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
+                kernels.warm_start(g, bodies, k, begin, end);
+            });
+        for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
+            (moved ? kernels.solve_moved : kernels.solve)(g, bodies, k, begin, end);
+        });
+        for_each_body_block(tasks, bodies, [&](int begin, int end) { kernels_.drift(bodies, k, begin, end); });
+        for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
+            kernels.relax(g, bodies, k, begin, end);
+        });
+    }
+    for_each_body_block(tasks, bodies, [&](int begin, int end) { kernels_.settle(bodies, begin, end); });
+}
+
+void Solver::store(TaskPool& tasks, ContactRecord* records) {
+    for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
+        kernels.store(g, records, begin, end);
+    });
+}
+
+}  // namespace lendulet
