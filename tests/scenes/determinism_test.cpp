@@ -1,0 +1,68 @@
+// One scene has one result: for any number of workers, any SIMD width and every broad phase.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "scenes/scene.h"
+
+namespace lendulet {
+namespace {
+
+constexpr int steps = 60;
+
+uint64_t hash_after(const char* name, const Configure& configure) {
+    Scene scene = build_scene(name, configure).value();
+    for (int step = 0; step < steps; ++step) {
+        if (scene.before_step) scene.before_step(scene.world, step);
+        scene.world.update(scene.dt).value();
+    }
+    EXPECT_EQ(scene.world.check(), "") << name;
+    return scene.world.hash();
+}
+
+class Determinism : public testing::TestWithParam<const char*> {
+protected:
+    void same_as(uint64_t expected, const Configure& configure, const std::string& what) {
+        EXPECT_EQ(hash_after(GetParam(), configure), expected) << GetParam() << " with " << what;
+    }
+};
+
+TEST_P(Determinism, WorkersAndWidths) {
+    uint64_t expected = hash_after(GetParam(), [](WorldBuilder& builder) { builder.workers(1).width(1); });
+    for (int workers : {1, 2, 5, 8})
+        for (int width : {1, 4, 8, 16}) {
+            if (workers == 1 && width == 1) continue;
+            // Every worker count with two widths and every width with two counts: all pairs would show no more.
+            if (workers != 1 && workers != 5 && width != 1 && width != 8) continue;
+            same_as(
+                expected, [&](WorldBuilder& builder) { builder.workers(workers).width(width); },
+                std::to_string(workers) + " workers, width " + std::to_string(width));
+        }
+}
+
+TEST_P(Determinism, BroadPhases) {
+    uint64_t expected = hash_after(GetParam(), {});
+    for (BroadPhaseType type : {BroadPhaseType::all_pairs, BroadPhaseType::sweep_1, BroadPhaseType::rtree_omt})
+        same_as(
+            expected, [&](WorldBuilder& builder) { builder.broad_phase(type).workers(2); }, std::string(name_of(type)));
+}
+
+TEST_P(Determinism, EverySteppedWorldHashesDifferently) {
+    Scene scene = build_scene(GetParam()).value();
+    uint64_t start = scene.world.hash();
+    scene.world.update(scene.dt).value();
+    EXPECT_NE(scene.world.hash(), start);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Determinism,
+                         testing::Values("box_pile:200", "mixed_pile:200", "ragdolls:4", "mesh_terrain:60", "tumbler:4",
+                                         "newtons_cradle"),
+                         [](const testing::TestParamInfo<const char*>& info) {
+                             std::string name = info.param;
+                             for (char& c : name)
+                                 if (c == ':') c = '_';
+                             return name;
+                         });
+
+}  // namespace
+}  // namespace lendulet
