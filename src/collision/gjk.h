@@ -22,17 +22,17 @@ struct ConvexPair {
 // depends on poses and cache alone.
 struct GjkCache {
     uint8_t count = 0;
-    Vec3 direction;       // last separating direction, frame of A
-    Vec3 a[4], b[4];      // local points of A and of B
+    Vec3 direction;   // last separating direction, frame of A
+    Vec3 a[4], b[4];  // local points of A and of B
 };
 
 struct ConvexDistance {
-    float distance;       // between the cores, m; negative: depth of the overlap of the cores
-    Vec3 normal;          // unit, from A to B, frame of A; defined for every distance (a fixed choice where undecidable)
+    float distance;  // between the cores, m; negative: depth of the overlap of the cores
+    Vec3 normal;     // unit, from A to B, frame of A; defined for every distance (a fixed choice where undecidable)
     Vec3 point_a, point_b;  // witness points on the cores, frame of A
-    int iterations;       // of GJK
-    int expansions;       // of EPA, 0 where the cores are apart
-    bool converged;       // the certificate (support gap along the normal) holds
+    int iterations;         // of GJK
+    int expansions;         // of EPA, 0 where the cores are apart
+    bool converged;         // the certificate (support gap along the normal) holds
 };
 
 // Distance of the cores; stops early, with a lower bound as distance, once they are proven farther apart than

@@ -1,0 +1,25 @@
+// Expanding polytope: how deep two cores overlap (thesis 4.2; van den Bergen, "Proximity queries and penetration depth
+// computation on 3D game objects", 2001). The depth is the distance from the origin to the surface of the Minkowski
+// difference; a polytope inside the difference grows towards the surface where it is nearest to the origin.
+#pragma once
+
+#include "collision/gjk_difference.h"
+
+namespace lendulet {
+
+inline constexpr int max_expansions = 64;
+
+struct Penetration {
+    double depth;   // m; how far the cores must be moved apart along the normal. Slightly negative: they are apart
+    Vec3d outward;  // unit; from the origin to the nearest point of the surface, so from B to A
+    Vec3d y;        // that point of the difference, and
+    Vec3d point_a;  // the point of A it belongs to, frame of A
+    double gap;     // the depth is known to within this, m
+    int expansions;
+};
+
+// `simplex` holds the origin, or touches it to within rounding; flat differences (two segments that cross, coplanar
+// polygons) give depth 0 with a normal perpendicular to them. `hint` breaks the tie of the two sides.
+Penetration expand_polytope(const CoreDifference& difference, const Simplex& simplex, Vec3d hint);
+
+}  // namespace lendulet

@@ -1,0 +1,152 @@
+// The Minkowski difference B - A of two cores, seen from the frame of A, through its support function
+// s(d) = s_B(d) - s_A(-d) (thesis 4.1). It holds the origin where the cores overlap; otherwise its point nearest to the
+// origin is the shortest vector from A to B.
+#pragma once
+
+#include "collision/gjk.h"
+#include "collision/gjk_math.h"
+#include "geometry/hull.h"
+
+namespace lendulet {
+
+// Farthest point of a core along d (any length), local frame. Curved cores are evaluated in double: in float the noise
+// of their surface would show in the normals of near contacts. Corners are exact floats in any case.
+inline Vec3d support_point(const Geometry& g, Vec3d d) {
+    switch (g.kind) {
+        case GeometryKind::point:
+            return {};
+        case GeometryKind::segment:
+            return {0.0, d.y < 0.0 ? -g.size.y : g.size.y, 0.0};
+        case GeometryKind::box:
+            return {d.x < 0.0 ? -g.size.x : g.size.x, d.y < 0.0 ? -g.size.y : g.size.y,
+                    d.z < 0.0 ? -g.size.z : g.size.z};
+        case GeometryKind::tapered_capsule: {
+            double r = length(d), bottom = g.size.x * r - g.size.y * d.y, top = g.size.z * r + g.size.y * d.y;
+            double end = top >= bottom ? 1.0 : -1.0, s = (top >= bottom ? g.size.z : g.size.x) / r;
+            if (!(r > 0.0)) return {0.0, end * g.size.y, 0.0};
+            return {s * d.x, end * g.size.y + s * d.y, s * d.z};
+        }
+        case GeometryKind::tapered_cylinder: {
+            double r = square_root(d.x * d.x + d.z * d.z);
+            double bottom = g.size.x * r - g.size.y * d.y, top = g.size.z * r + g.size.y * d.y;
+            double end = top >= bottom ? 1.0 : -1.0, s = r > 0.0 ? (top >= bottom ? g.size.z : g.size.x) / r : 0.0;
+            return {s * d.x, end * g.size.y, s * d.z};
+        }
+        default: {
+            // Out of the range of float products (near contact v can be 1e-30 m long) only the direction is kept.
+            double m = largest_component(d);
+            if (m < 1e-12 || m > 1e12) d = (m > 0.0 ? 1.0 / m : 0.0) * d;
+            return to_double(support_core(g, to_float(d)));
+        }
+    }
+}
+
+inline bool is_curved(const Geometry& g) {
+    return g.kind == GeometryKind::tapered_capsule || g.kind == GeometryKind::tapered_cylinder;
+}
+
+// The point of the core's curved surface that p was before it was rounded to float: supports lie on the rim or at the
+// centre of a cap, or on one of the two balls.
+inline Vec3d snap_to_core(const Geometry& g, Vec3d p) {
+    if (!is_curved(g)) return p;
+    Vec3d bottom{p.x, p.y + g.size.y, p.z}, top{p.x, p.y - g.size.y, p.z};
+    bool at_top = absolute(top.y) < absolute(bottom.y);
+    if (g.kind == GeometryKind::tapered_cylinder) bottom.y = top.y = 0.0;
+    double rb = length(bottom), rt = length(top);
+    if (g.kind == GeometryKind::tapered_capsule) at_top = absolute(rt - g.size.z) < absolute(rb - g.size.x);
+    Vec3d q = at_top ? top : bottom;
+    double r = at_top ? rt : rb, radius = at_top ? g.size.z : g.size.x;
+    Vec3d centre{0.0, at_top ? g.size.y : -g.size.y, 0.0};
+    return r > 0.5 * radius ? centre + (radius / r) * q : centre;
+}
+
+// Largest coordinate of the core's points, for tolerances.
+inline double core_size(const Geometry& g) {
+    switch (g.kind) {
+        case GeometryKind::point:
+            return 0.0;
+        case GeometryKind::segment:
+            return g.size.y;
+        case GeometryKind::box:
+            return max_component(g.size);
+        case GeometryKind::tapered_capsule:
+        case GeometryKind::tapered_cylinder:
+            return g.size.y + maximum(g.size.x, g.size.z);
+        case GeometryKind::triangle:
+            return max_component(
+                maximum(absolute(g.triangle[0]), maximum(absolute(g.triangle[1]), absolute(g.triangle[2]))));
+        default:
+            return max_component(maximum(absolute(g.hull->lower), absolute(g.hull->upper)));
+    }
+}
+
+// A point of the middle of the core; the line between two of them starts a cold search.
+inline Vec3d core_centre(const Geometry& g) {
+    if (g.kind == GeometryKind::hull) return to_double(g.hull->centroid);
+    if (g.kind == GeometryKind::triangle)
+        return (1.0 / 3.0) * (to_double(g.triangle[0]) + to_double(g.triangle[1]) + to_double(g.triangle[2]));
+    return {};
+}
+
+// A point of the difference with the local points of the cores it comes from.
+struct DifferencePoint {
+    Vec3d y;    // frame of A
+    Vec3 a, b;  // each in its own frame
+};
+
+// Up to four points of the difference. The arrays start unset: clearing them would cost as much as a warm query.
+struct Simplex {
+    int count = 0;
+    union {
+        Vec3d y[4];
+    };
+    union {
+        Vec3 a[4];
+    };
+    union {
+        Vec3 b[4];
+    };
+    union {
+        double weight[4];  // barycentric coordinates of the point nearest to the origin
+    };
+
+    Simplex() {}
+    DifferencePoint point(int i) const { return {y[i], a[i], b[i]}; }
+    void set(int i, const DifferencePoint& p) { y[i] = p.y, a[i] = p.a, b[i] = p.b; }
+    void add(const DifferencePoint& p) { set(count++, p); }
+};
+
+struct CoreDifference {
+    const Geometry& a;
+    const Geometry& b;
+    Mat3d rotation;  // frame of B to frame of A
+    Vec3d translation;
+    double size;  // S of the tolerances: extent of both cores and of their offset
+    bool curved;
+
+    explicit CoreDifference(const ConvexPair& pair)
+        : a(*pair.a),
+          b(*pair.b),
+          rotation(exact_rotation(pair.b_in_a.rotation)),
+          translation(to_double(pair.b_in_a.translation)),
+          size(core_size(a) + core_size(b) + largest_component(translation)),
+          curved(is_curved(a) || is_curved(b)) {}
+
+    DifferencePoint support(Vec3d d) const {
+        Vec3d pa = support_point(a, -d), pb = support_point(b, transpose_multiply(rotation, d));
+        return {translation + rotation * pb - pa, to_float(pa), to_float(pb)};
+    }
+    // The point that local points remembered from an earlier query make now.
+    DifferencePoint point(Vec3 pa, Vec3 pb) const {
+        return {translation + rotation * snap_to_core(b, to_double(pb)) - snap_to_core(a, to_double(pa)), pa, pb};
+    }
+    Vec3d centre() const { return translation + rotation * core_centre(b) - core_centre(a); }
+    // The point on A, frame of A, that belongs to the given part of a simplex.
+    Vec3d witness_on_a(const Simplex& s, const uint8_t* index, const double* weight, int count) const {
+        Vec3d p{};
+        for (int i = 0; i < count; ++i) p += weight[i] * snap_to_core(a, to_double(s.a[index[i]]));
+        return p;
+    }
+};
+
+}  // namespace lendulet

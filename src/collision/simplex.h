@@ -1,0 +1,55 @@
+// Closest point to the origin of a simplex of one to four points: the inner problem of GJK (thesis 4.1), in the two
+// ways of the thesis. Both accept any points, degenerate simplices included, and agree to rounding.
+#pragma once
+
+#include <cstdint>
+
+#include "collision/gjk_math.h"
+#include "lendulet/options.h"
+
+namespace lendulet {
+
+// The smallest part of a simplex that holds its closest point to the origin.
+struct SubSimplex {
+    int count;         // points of the part; 4: the origin lies inside the tetrahedron
+    uint8_t index[4];  // which points, in rising order
+    double weight[4];  // barycentric coordinates of the closest point, positive, sum 1
+    Vec3d point;       // the closest point; exactly zero for count 4
+};
+
+// By signed lengths, areas and volumes: a negative barycentric coordinate names a part that cannot hold the closest
+// point; where several are negative, all remaining parts are tried and the nearest wins. Compare Montanari, Petrinic,
+// Barbieri, "Improving the GJK algorithm for faster and more reliable distance queries", ACM TOG 36 (2017).
+SubSimplex closest_barycentric(const Vec3d* y, int count);
+
+// By half spaces: starting at the newest point, walks from part to neighbouring part across the planes that bound the
+// Voronoi regions of vertices, edges and faces, until the origin lies on the inner side of all planes of one region.
+// The generalisation to three dimensions of the walk in the plane; compare Mirtich, "V-Clip", ACM TOG 17 (1998).
+SubSimplex closest_half_space(const Vec3d* y, int count);
+
+LENDULET_FORCE_INLINE SubSimplex closest_sub_simplex(SimplexSolver method, const Vec3d* y, int count) {
+    return method == SimplexSolver::barycentric ? closest_barycentric(y, count) : closest_half_space(y, count);
+}
+
+// -- Pieces that both share -------------------------------------------------------------------------------------------
+
+LENDULET_FORCE_INLINE SubSimplex vertex_part(const Vec3d* y, int i) {
+    return {1, {static_cast<uint8_t>(i)}, {1.0}, y[i]};
+}
+// The point between y[i] and y[j] whose signed distances from the end planes are ti (behind i) and tj (behind j).
+LENDULET_FORCE_INLINE SubSimplex edge_part(const Vec3d* y, int i, int j, double ti, double tj) {
+    double s = ti / (ti + tj);
+    return {2, {static_cast<uint8_t>(i), static_cast<uint8_t>(j)}, {1.0 - s, s}, y[i] + s * (y[j] - y[i])};
+}
+// Inside the triangle i, j, k with normal n and twice the signed areas ai, aj, ak opposite to its corners. The closest
+// point is taken along the normal, which keeps its direction exact however far the triangle reaches.
+LENDULET_FORCE_INLINE SubSimplex face_part(const Vec3d* y, int i, int j, int k, Vec3d n, double ai, double aj,
+                                           double ak) {
+    double scale = 1.0 / (ai + aj + ak);
+    return {3,
+            {static_cast<uint8_t>(i), static_cast<uint8_t>(j), static_cast<uint8_t>(k)},
+            {scale * ai, scale * aj, scale * ak},
+            (dot(n, y[i]) / dot(n, n)) * n};
+}
+
+}  // namespace lendulet
