@@ -60,8 +60,9 @@ struct SceneDescription {
     Vec3 gravity{0.0f, -10.0f, 0.0f};
     float friction = 0.6f, restitution = 0.0f;  // of all colliders that say nothing else
     float dt = 1.0f / 60.0f;
-    int steps = 600;        // how long it is worth watching
-    int warm_up_steps = 0;  // how long it takes to reach the state it is about; benchmarks measure after these
+    int steps = 600;           // how long it is worth watching
+    int warm_up_steps = 0;     // how long it takes to reach the state it is about; benchmarks measure after these
+    bool about_sleep = false;  // benchmarks switch sleeping off unless the scene is about it
     std::function<void(SceneDriver&, int step)> before_step;  // may be empty
 };
 

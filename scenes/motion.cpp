@@ -66,6 +66,7 @@ SceneDescription large_world_sleep(int count) {
     SceneDescription scene;
     scene.steps = 300;
     scene.warm_up_steps = 180;
+    scene.about_sleep = true;
     add_ground(scene, 400.0f);
     for (int i = 0; i < count; ++i)
         add_body(scene, Box{half_metre},

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "lendulet/lendulet.h"
@@ -21,6 +22,8 @@ struct Scene {
     int steps = 600;                                    // how long it is worth watching
     std::function<void(World&, int step)> before_step;  // may be empty: spawns, kinematic motion
     std::vector<std::string> warnings;                  // of loading
+    // Names of colliders that differ from their body's: nodes of a file below a moving one.
+    std::vector<std::pair<ColliderId, std::string>> collider_names;
 };
 
 struct SceneInfo {
