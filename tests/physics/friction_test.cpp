@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/cases.h"
+#include "scale.h"
 
 namespace lendulet::cases {
 namespace {
@@ -45,13 +46,14 @@ Slide slide_on_slope(const Frame& frame, Ground ground, float friction, int step
 // It slips just where mu < tan 45 deg, and then by g (sin - mu cos) t^2 / 2.
 TEST(Friction, A17StickSlipThreshold) {
     constexpr int steps = 300;
+    const int stride = 100 / scaled(20, 5);
     const double t = steps * static_cast<double>(dt);
     Worst wrong("A17 wrong outcomes beyond 0.002 of mu = 1", 0, "");
     Worst creep("A17 creep at mu = 1.2", 1e-6, "m/s");
     double largest_slip = 0.0, smallest_stick = 9.0, displacement_error = 0.0;
     for (const Frame& frame : random_frames())
         for (Ground ground : grounds) {
-            for (int i = -100; i <= 100; i += 5) {
+            for (int i = -100; i <= 100; i += stride) {
                 float friction = 1.0f + 0.001f * static_cast<float>(i);
                 Slide slide = slide_on_slope(frame, ground, friction, steps);
                 double expected = 0.5 * standard_gravity * std::sqrt(0.5) * (1.0 - friction) * t * t;
@@ -118,11 +120,12 @@ TEST(Friction, A18StoppingDistance) {
 TEST(Friction, A20Isotropy) {
     Worst spread("A20 spread of stopping distances", 0.1, "%"), direction("A20 direction error", 0.05, "deg");
     Worst yaw("A20 yaw", 0.1, "deg");
+    const int stride = 90 / scaled(18, 3);
     for (const Frame& frame : random_frames())
         for (Ground ground : grounds)
             for (bool turned : {false, true}) {
                 double shortest = 1e9, longest = 0.0;
-                for (int angle = 0; angle <= 90; angle += 5) {
+                for (int angle = 0; angle <= 90; angle += stride) {
                     float heading = static_cast<float>(angle) * pi / 180.0f;
                     Stop stop = slide_to_stop(frame, ground, heading, turned ? heading : 0.0f);
                     shortest = std::fmin(shortest, stop.distance);

@@ -3,12 +3,13 @@
 
 #include <string>
 
+#include "scale.h"
 #include "scenes/scene.h"
 
 namespace lendulet {
 namespace {
 
-constexpr int steps = 60;
+const int steps = scaled(60, 10);
 
 uint64_t hash_after(const char* name, const Configure& configure) {
     Scene scene = build_scene(name, configure).value();

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <vector>
 
+#include "scale.h"
 #include "scenes/scene.h"
 
 namespace lendulet {
@@ -21,7 +22,8 @@ Stand stand_for_a_minute(const char* name) {
     World& world = scene.world;
     std::vector<Position> start;
     for (int i = 0; i < world.body_count(); ++i) start.push_back(world.get_static(world.body(i)).position());
-    for (int step = 0; step < 3600; ++step) world.update(1.0f / 60.0f).value();
+    const int steps = scaled(3600, 300);
+    for (int step = 0; step < steps; ++step) world.update(1.0f / 60.0f).value();
     Stand stand;
     for (int i = 1; i < world.body_count(); ++i) {
         const RigidBodyRef body = world.get(world.body(i));
