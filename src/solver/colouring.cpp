@@ -17,14 +17,14 @@ int free_colour(uint32_t used, int colours) {
 
 }  // namespace
 
-void ColourSchedule::build(const ContactRecord* records, int count, const SolverBodies& bodies,
+void ColourSchedule::build(const ContactRecord* records, const uint32_t* list, int count, const SolverBodies& bodies,
                            const SolverKernels& kernels, const SolverKernels& scalar_kernels) {
     used_moving.assign(static_cast<size_t>(bodies.count), 0u);
     used_fixed.assign(static_cast<size_t>(bodies.count), 0u);
     keys.resize_unset(static_cast<size_t>(count));
     counts.assign(key_count + 1, 0u);
     for (int i = 0; i < count; ++i) {
-        const ContactRecord& r = records[i];
+        const ContactRecord& r = records[list[i]];
         size_t a = static_cast<size_t>(r.body_a), b = static_cast<size_t>(r.body_b);
         int colour;
         if (bodies.state[a].inverse_mass > 0.0f) {
@@ -67,7 +67,7 @@ void ColourSchedule::build(const ContactRecord* records, int count, const Solver
     overflow = static_cast<int>(counts[key_count] - counts[overflow_colour * classes]);
     rows.resize_unset(bytes);
     for (ContactGroup& g : groups) g.rows = rows.data() + reinterpret_cast<size_t>(g.rows);
-    for (int i = 0; i < count; ++i) order[counts[keys[i]]++] = static_cast<uint32_t>(i);
+    for (int i = 0; i < count; ++i) order[counts[keys[i]]++] = list[i];
 }
 
 }  // namespace lendulet

@@ -27,8 +27,8 @@ struct ColourSchedule {
         : order(memory), groups(memory), colour_ends(memory), rows(memory), used_moving(memory), used_fixed(memory),
           keys(memory), counts(memory) {}
 
-    // Colours `count` records; body_count as in SolverBodies. `fixed_a` tells whether body A is moved by constraints.
-    void build(const ContactRecord* records, int count, const SolverBodies& bodies, const SolverKernels& kernels,
+    // Colours the `count` records that `list` names. Where only one body of a record is moved, it is B.
+    void build(const ContactRecord* records, const uint32_t* list, int count, const SolverBodies& bodies, const SolverKernels& kernels,
                const SolverKernels& scalar_kernels);
     int colour_count() const { return colour_ends.count(); }
 

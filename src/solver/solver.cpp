@@ -41,11 +41,12 @@ void Solver::for_each_group(TaskPool& tasks, Run&& run) {
     }
 }
 
-void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, int count) {
-    schedule_.build(records, count, bodies, kernels_, scalar_);
+void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, const uint32_t* list,
+                     int count) {
+    schedule_.build(records, list, count, bodies, kernels_, scalar_);
     bouncing_.clear();
     for (int i = 0; i < count; ++i)
-        if (records[i].restitution > 0.0f) bouncing_.push_back(static_cast<uint32_t>(i));
+        if (records[list[i]].restitution > 0.0f) bouncing_.push_back(list[i]);
     for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
         kernels.prepare(g, records, bodies, begin, end);
     });

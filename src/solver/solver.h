@@ -37,8 +37,8 @@ public:
     Solver(const Memory* memory, int width)
         : schedule_(memory), bouncing_(memory), kernels_(solver_kernels(width)), scalar_(solver_kernels(1)) {}
 
-    // Colours the manifolds and packs them into rows.
-    void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, int count);
+    // Colours the manifolds that `list` names and packs them into rows.
+    void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, const uint32_t* list, int count);
     // Runs the substeps; bodies move.
     void solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records);
     // Writes impulses and final separations back.

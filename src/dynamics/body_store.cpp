@@ -1,0 +1,57 @@
+#include "dynamics/body_store.h"
+
+namespace lendulet {
+
+uint32_t BodyStore::add() {
+    uint32_t slot = slots.add();
+    size_t n = slots.capacity();
+    pose.resize(n);
+    momenta.resize(n);
+    mass.resize(n);
+    forces.resize(n);
+    change.resize(n);
+    info.resize(n);
+    principal.resize(n);
+    if (name.size() < n) name.resize(n);
+    pose[slot] = {};
+    momenta[slot] = {};
+    mass[slot] = {};
+    forces[slot] = {};
+    change[slot] = {};
+    info[slot] = {};
+    principal[slot] = {};
+    name[slot].clear();
+    return slot;
+}
+
+Pose BodyStore::user_pose(uint32_t slot) const { return pose[slot] * inverse(principal[slot]); }
+
+void BodyStore::set_user_pose(uint32_t slot, Pose user) { pose[slot] = user * principal[slot]; }
+
+Vec3 BodyStore::velocity(uint32_t slot) const {
+    const BodyMomenta& m = momenta[slot];
+    return info[slot].type == BodyType::kinematic ? m.p : mass[slot].inverse_mass * m.p;
+}
+
+Vec3 BodyStore::angular_velocity(uint32_t slot) const {
+    const BodyMomenta& m = momenta[slot];
+    if (info[slot].type == BodyType::kinematic) return m.L;
+    Quat q = pose[slot].orientation;
+    return rotate(q, multiply(mass[slot].inverse_inertia, rotate_inverse(q, m.L)));
+}
+
+SymMat3 BodyStore::inverse_inertia_world(uint32_t slot) const {
+    return rotate_diagonal(rotation_matrix<float>(QuatT<float>(pose[slot].orientation), 1.0f), mass[slot].inverse_inertia);
+}
+
+Vec3 BodyStore::inertia_times(uint32_t slot, Vec3 w) const {
+    Quat q = pose[slot].orientation;
+    return rotate(q, multiply(mass[slot].inertia, rotate_inverse(q, w)));
+}
+
+size_t BodyStore::bytes_per_body() {
+    return sizeof(Pose) + sizeof(BodyMomenta) + sizeof(BodyMass) + sizeof(BodyForces) + sizeof(BodyChange) +
+           sizeof(BodyInfo) + sizeof(Transform) + sizeof(std::string) + 3 * sizeof(uint32_t);
+}
+
+}  // namespace lendulet

@@ -1,0 +1,85 @@
+// All bodies of a world as a structure of arrays, by slot. Grouped by who reads what: a step touches poses, momenta and
+// masses of awake bodies; the rest is for the door.
+//
+// Positions and orientations are those of the principal frame: the centre of mass and the principal axes of inertia. The
+// user's body frame is recovered with `principal` where it is asked for.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/memory.h"
+#include "dynamics/slots.h"
+#include "lendulet/body.h"
+#include "lendulet/math.h"
+
+namespace lendulet {
+
+inline constexpr uint32_t no_slot = ~0u;
+
+// The conserved state. p_low is what rounding p lost so far (compensated summation), so that a body that falls for
+// minutes gains exactly m g t.
+struct BodyMomenta {
+    Vec3 p, p_low, L;
+};
+
+struct BodyMass {
+    float mass = 0.0f, inverse_mass = 0.0f;
+    Vec3 inertia, inverse_inertia;  // principal
+    float anisotropy = 1.0f;        // largest over smallest principal moment
+};
+
+struct BodyForces {
+    Vec3 force, torque;  // held for the next step, world axes, about the centre of mass
+};
+
+// How the last substep changed velocity and L: the drift expects the same again.
+struct BodyChange {
+    Vec3 v, L;
+};
+
+struct BodyInfo {
+    BodyType type = BodyType::fixed;
+    bool asleep = false, allow_sleep = true, has_forces = false;
+    bool capped = false, contained = false;  // in the last step: speed cut; state went non-finite and was put back
+    float gravity_factor = 1.0f, linear_damping = 0.0f, angular_damping = 0.0f;
+    float still_time = 0.0f;       // how long it has been slow, s
+    float radius = 0.0f;           // of a sphere about the centre of mass that holds all colliders
+    uint32_t first_collider = no_slot;
+    int32_t collider_count = 0;
+    int32_t solver_index = 0;      // in this step's SolverBodies
+    uint64_t user_data = 0;
+};
+
+struct BodyStore {
+    Slots slots;
+    Array<Pose> pose;               // of the principal frame
+    Array<BodyMomenta> momenta;     // kinematic bodies: p holds velocity, L angular velocity
+    Array<BodyMass> mass;
+    Array<BodyForces> forces;
+    Array<BodyChange> change;
+    Array<BodyInfo> info;
+    Array<Transform> principal;     // principal frame in the user's body frame
+    std::vector<std::string> name;
+
+    explicit BodyStore(const Memory* memory)
+        : slots(memory), pose(memory), momenta(memory), mass(memory), forces(memory), change(memory), info(memory),
+          principal(memory) {}
+
+    uint32_t add();
+    BodyId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }
+    bool alive(BodyId body) const { return slots.alive(body.index, body.generation); }
+    // Pose of the user's body frame.
+    Pose user_pose(uint32_t slot) const;
+    void set_user_pose(uint32_t slot, Pose user);
+    // v = p / m and w = R I^-1 R^T L (thesis 3.1, 3.2); the given ones for kinematic bodies.
+    Vec3 velocity(uint32_t slot) const;
+    Vec3 angular_velocity(uint32_t slot) const;
+    SymMat3 inverse_inertia_world(uint32_t slot) const;
+    // Theta w: R I R^T w.
+    Vec3 inertia_times(uint32_t slot, Vec3 w) const;
+    static size_t bytes_per_body();
+};
+
+}  // namespace lendulet

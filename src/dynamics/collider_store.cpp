@@ -1,0 +1,45 @@
+#include "dynamics/collider_store.h"
+
+namespace lendulet {
+namespace {
+
+float combine(CombineRule rule, float a, float b) {
+    switch (rule) {
+        case CombineRule::average: return 0.5f * (a + b);
+        case CombineRule::minimum: return minimum(a, b);
+        case CombineRule::maximum: return maximum(a, b);
+        case CombineRule::multiply: return a * b;
+    }
+    return 0.0f;
+}
+
+CombineRule stronger(CombineRule a, CombineRule b) { return a < b ? a : b; }
+
+}  // namespace
+
+ContactSurface combine(const Surface& a, const Surface& b) {
+    CombineRule friction = stronger(a.friction_combine, b.friction_combine);
+    CombineRule restitution = stronger(a.restitution_combine, b.restitution_combine);
+    ContactSurface s;
+    s.static_friction = combine(friction, a.static_friction, b.static_friction);
+    s.dynamic_friction = combine(friction, a.dynamic_friction, b.dynamic_friction);
+    s.restitution = combine(restitution, a.restitution, b.restitution);
+    // A surface that slides harder than it sticks would gain energy from the difference.
+    s.static_friction = maximum(s.static_friction, s.dynamic_friction);
+    return s;
+}
+
+uint32_t ColliderStore::add() {
+    uint32_t slot = slots.add();
+    size_t n = slots.capacity();
+    geometry.resize(n);
+    local.resize(n);
+    surface.resize(n, Surface{});
+    info.resize(n);
+    place.resize(n);
+    if (shape.size() < n) shape.resize(n), given.resize(n);
+    info[slot] = {};
+    return slot;
+}
+
+}  // namespace lendulet

@@ -1,0 +1,67 @@
+// All colliders of a world: shapes placed on bodies, with surface and filter.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/memory.h"
+#include "dynamics/body_store.h"
+#include "dynamics/slots.h"
+#include "geometry/geometry.h"
+#include "lendulet/body.h"
+
+namespace lendulet {
+
+// A material with the world's defaults filled in.
+struct Surface {
+    float static_friction, dynamic_friction, restitution;
+    CombineRule friction_combine, restitution_combine;
+};
+
+// The surface of a contact. Where rules disagree the one that comes first in CombineRule wins.
+struct ContactSurface {
+    float static_friction, dynamic_friction, restitution;
+};
+ContactSurface combine(const Surface& a, const Surface& b);
+
+inline bool filters_match(const CollisionFilter& a, const CollisionFilter& b) {
+    if (a.group != 0 && a.group == b.group) return false;
+    return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
+}
+
+struct ColliderInfo {
+    uint32_t body = no_slot, next = no_slot;  // the body's next collider
+    bool is_trigger = false;
+    float radius = 0.0f;       // of a sphere about the shape's position that holds it
+    CollisionFilter filter{};
+    uint64_t user_data = 0;
+};
+
+// Where a collider is this step: turned with its body, and its place from the body's centre of mass in world axes.
+struct ColliderPlace {
+    Quat rotation;
+    Vec3 arm;
+};
+
+struct ColliderStore {
+    Slots slots;
+    Array<Geometry> geometry;
+    Array<Transform> local;        // in the body's principal frame
+    Array<Surface> surface;
+    Array<ColliderInfo> info;
+    Array<ColliderPlace> place;
+    std::vector<Shape> shape;      // as given, keeps shared hulls and meshes alive
+    std::vector<Transform> given;  // as given, in the user's body frame
+
+    explicit ColliderStore(const Memory* memory)
+        : slots(memory), geometry(memory), local(memory), surface(memory), info(memory), place(memory) {}
+
+    uint32_t add();
+    ColliderId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }
+    bool alive(ColliderId c) const { return slots.alive(c.index, c.generation); }
+    void update_place(uint32_t slot, Quat body_orientation) {
+        place[slot] = {body_orientation * local[slot].rotation, rotate(body_orientation, local[slot].translation)};
+    }
+};
+
+}  // namespace lendulet

@@ -1,0 +1,253 @@
+// Adding and removing bodies: checks, mass properties, colliders.
+#include <string>
+
+#include "geometry/mass.h"
+#include "world/validate.h"
+#include "world/world_data.h"
+
+namespace lendulet {
+namespace {
+
+constexpr float min_mass = 1e-9f, max_mass = 1e12f;
+constexpr size_t max_name = 255;
+
+// A collider that was checked and is ready to be stored.
+struct CheckedCollider {
+    Geometry geometry;
+    ColliderDef def;
+    Surface surface;
+};
+
+Error refused(ErrorCode code, const char* call, std::string what) { return {code, std::string(call) + ": " + std::move(what)}; }
+
+Result<float> coefficient(std::optional<float> given, float fallback, float most, const char* what, const char* call) {
+    float value = given.value_or(fallback);
+    if (!is_finite(value) || value < 0.0f || value > most)
+        return refused(ErrorCode::bad_material, call,
+                       std::string(what) + " is " + text(value) + ", must be between 0 and " + text(most));
+    return value;
+}
+
+Result<Surface> make_surface(const WorldConfig& config, const Material& m, const char* call) {
+    Result<float> fixed = coefficient(m.static_friction, config.friction, 1e6f, "static friction", call);
+    if (!fixed) return fixed.error();
+    Result<float> sliding = coefficient(m.dynamic_friction, m.static_friction.value_or(config.friction), 1e6f, "dynamic friction", call);
+    if (!sliding) return sliding.error();
+    Result<float> bounce = coefficient(m.restitution, config.restitution, 1.0f, "restitution", call);
+    if (!bounce) return bounce.error();
+    return Surface{fixed.value(), sliding.value(), bounce.value(), m.friction_combine, m.restitution_combine};
+}
+
+Result<CheckedCollider> check_collider(WorldData& world, const ColliderDef& def, bool moves, const char* call) {
+    Result<Geometry> geometry = make_geometry(def.shape);
+    if (!geometry) return refused(geometry.error().code, call, geometry.error().message);
+    CheckedCollider c{geometry.value(), def, {}};
+    if (!is_finite(def.local.translation))
+        return refused(ErrorCode::non_finite, call, "the collider's local position must be finite");
+    Result<Quat> q = unit_quaternion(def.local.rotation, call);
+    if (!q) return q.error();
+    c.def.local.rotation = q.value();
+    if (!is_finite(def.density) || !(def.density > 0.0f))
+        return refused(ErrorCode::bad_mass, call, "density is " + text(def.density) + ", must be positive");
+    Result<Surface> surface = make_surface(world.config, def.material, call);
+    if (!surface) return surface.error();
+    c.surface = surface.value();
+    if (moves && c.geometry.kind == GeometryKind::plane)
+        return refused(ErrorCode::shape_not_dynamic, call, "a plane cannot be on a moving body");
+    if (moves && c.geometry.kind == GeometryKind::mesh) {
+        if (!c.geometry.hull)
+            return refused(ErrorCode::shape_not_dynamic, call, "a flat mesh has no hull to collide as on a moving body");
+        c.geometry.kind = GeometryKind::hull;
+        c.geometry.mesh = nullptr;
+    }
+    return c;
+}
+
+// The colliders of a definition: its list, or its one shape with the material fields beside it.
+template <class Def>
+std::vector<ColliderDef> colliders_of(const Def& def, float density) {
+    if (!def.colliders.empty()) return {def.colliders.begin(), def.colliders.end()};
+    ColliderDef one;
+    one.shape = def.shape;
+    one.material.static_friction = def.friction;
+    one.material.dynamic_friction = def.dynamic_friction ? def.dynamic_friction : def.friction;
+    one.material.restitution = def.restitution;
+    one.filter = def.filter;
+    one.density = density;
+    return {one};
+}
+
+Result<MassProperties> body_mass(const RigidBodyDef& def, const std::vector<CheckedCollider>& colliders, const char* call) {
+    MassProperties total{};
+    for (const CheckedCollider& c : colliders) {
+        if (c.def.is_trigger) continue;
+        total = combine(total, transformed(mass_properties(c.def.shape, c.def.density), c.def.local));
+    }
+    if (def.mass) {
+        if (!is_finite(*def.mass) || !(*def.mass > 0.0f))
+            return refused(ErrorCode::bad_mass, call, "mass is " + text(*def.mass) + ", must be positive");
+        float scale = total.mass > 0.0f ? *def.mass / total.mass : 0.0f;
+        SymMat3& i = total.inertia;
+        i = {scale * i.xx, scale * i.yy, scale * i.zz, scale * i.xy, scale * i.xz, scale * i.yz};
+        total.mass = *def.mass;
+    }
+    if (def.centre_of_mass) {
+        if (!is_finite(*def.centre_of_mass)) return refused(ErrorCode::non_finite, call, "centre of mass must be finite");
+        if (!def.inertia) total = about(total, *def.centre_of_mass);
+        total.centre = *def.centre_of_mass;
+    }
+    if (def.inertia) total.inertia = *def.inertia;
+    if (!(total.mass >= min_mass && total.mass <= max_mass))
+        return refused(ErrorCode::bad_mass, call,
+                       "mass is " + text(total.mass) + " kg, must be between " + text(min_mass) + " and " + text(max_mass));
+    return total;
+}
+
+Status set_mass(BodyStore& bodies, uint32_t slot, const MassProperties& m, PrincipalInertia principal) {
+    BodyMass& mass = bodies.mass[slot];
+    mass.mass = m.mass;
+    mass.inverse_mass = 1.0f / m.mass;
+    mass.inertia = principal.inertia;
+    mass.inverse_inertia = {1.0f / principal.inertia.x, 1.0f / principal.inertia.y, 1.0f / principal.inertia.z};
+    float most = max_component(mass.inertia), least = min_component(mass.inertia);
+    mass.anisotropy = most - least <= 1e-6f * most ? 1.0f : most / least;
+    bodies.principal[slot] = {m.centre, principal.rotation};
+    return {};
+}
+
+// Positive, and each no larger than the other two together (it is a sum of squares of distances).
+Status check_inertia(Vec3 i, const char* call) {
+    bool positive = is_finite(i) && min_component(i) > 0.0f;
+    float sum = i.x + i.y + i.z, most = max_component(i);
+    if (!positive || 2.0f * most > sum * (1.0f + 1e-5f))
+        return refused(ErrorCode::bad_inertia, call,
+                       "principal inertia is " + text(i.x) + ", " + text(i.y) + ", " + text(i.z) +
+                           ": each must be positive and at most the sum of the others");
+    return {};
+}
+
+void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollider>& list) {
+    BodyInfo& info = world.bodies.info[body];
+    Transform to_principal = inverse(world.bodies.principal[body]);
+    info.radius = 0.0f;
+    uint32_t last = no_slot;
+    for (CheckedCollider& c : list) {
+        uint32_t slot = world.colliders.add();
+        ColliderInfo& ci = world.colliders.info[slot];
+        ci.body = body;
+        ci.is_trigger = c.def.is_trigger;
+        ci.filter = c.def.filter;
+        ci.user_data = c.def.user_data;
+        ci.radius = bounding_radius(c.geometry);
+        world.colliders.geometry[slot] = c.geometry;
+        world.colliders.surface[slot] = c.surface;
+        world.colliders.given[slot] = c.def.local;
+        world.colliders.local[slot] = to_principal * c.def.local;
+        world.colliders.shape[slot] = std::move(c.def.shape);
+        (last == no_slot ? info.first_collider : world.colliders.info[last].next) = slot;
+        last = slot;
+        ++info.collider_count;
+        info.radius = maximum(info.radius, length(world.colliders.local[slot].translation) + ci.radius);
+    }
+}
+
+Result<std::vector<CheckedCollider>> check_colliders(WorldData& world, const std::vector<ColliderDef>& defs, bool moves, const char* call) {
+    std::vector<CheckedCollider> out;
+    for (const ColliderDef& d : defs) {
+        Result<CheckedCollider> c = check_collider(world, d, moves, call);
+        if (!c) return c.error();
+        out.push_back(std::move(c).value());
+    }
+    return out;
+}
+
+Status check_motion(const RigidBodyDef& def, const char* call) {
+    bool numbers = is_finite(def.velocity) && is_finite(def.angular_velocity) && is_finite(def.gravity_factor) &&
+                   is_finite(def.linear_damping) && is_finite(def.angular_damping);
+    if (!numbers) return refused(ErrorCode::non_finite, call, "velocities, damping and gravity factor must be finite");
+    if (def.linear_damping < 0.0f || def.angular_damping < 0.0f)
+        return refused(ErrorCode::bad_material, call, "damping must not be negative");
+    return {};
+}
+
+}  // namespace
+
+Result<BodyId> World::add_rigid_body(const RigidBodyDef& def) {
+    constexpr const char* call = "add_rigid_body";
+    WorldData& world = *data_;
+    if (Status s = check_motion(def, call); !s) return s.error();
+    if (Status s = valid_position(def.position, call); !s) return s.error();
+    Result<Quat> q = unit_quaternion(def.orientation, call);
+    if (!q) return q.error();
+    std::vector<ColliderDef> defs = colliders_of(def, def.density);
+    Result<std::vector<CheckedCollider>> colliders = check_colliders(world, defs, !def.kinematic, call);
+    if (!colliders) return colliders.error();
+    MassProperties mass{};
+    PrincipalInertia principal{};
+    if (!def.kinematic) {
+        Result<MassProperties> m = body_mass(def, colliders.value(), call);
+        if (!m) return m.error();
+        mass = m.value();
+        principal = principal_axes(mass.inertia);
+        if (Status s = check_inertia(principal.inertia, call); !s) return s.error();
+    }
+    // Nothing can be refused from here on.
+    for (size_t i = 0; i < defs.size(); ++i)
+        if (!def.kinematic && std::holds_alternative<TriangleMesh>(defs[i].shape))
+            world.warnings.push_back("body '" + std::string(def.name) + "' moves: its triangle mesh collides as its convex hull");
+    uint32_t slot = world.bodies.add();
+    BodyInfo& info = world.bodies.info[slot];
+    info.type = def.kinematic ? BodyType::kinematic : BodyType::dynamic;
+    info.allow_sleep = def.allow_sleep;
+    info.gravity_factor = def.gravity_factor;
+    info.linear_damping = def.linear_damping;
+    info.angular_damping = def.angular_damping;
+    info.user_data = def.user_data;
+    world.bodies.name[slot] = std::string(def.name.substr(0, max_name));
+    if (def.kinematic) world.bodies.principal[slot] = {def.centre_of_mass.value_or(Vec3{}), {}};
+    else set_mass(world.bodies, slot, mass, principal).value();
+    world.bodies.set_user_pose(slot, {def.position, q.value()});
+    world.bodies.momenta[slot].p = def.kinematic ? def.velocity : mass.mass * def.velocity;
+    world.bodies.momenta[slot].L = def.kinematic ? def.angular_velocity : world.bodies.inertia_times(slot, def.angular_velocity);
+    store_colliders(world, slot, colliders.value());
+    return world.bodies.id(slot);
+}
+
+Result<BodyId> World::add_static_body(const StaticBodyDef& def) {
+    constexpr const char* call = "add_static_body";
+    WorldData& world = *data_;
+    if (Status s = valid_position(def.position, call); !s) return s.error();
+    Result<Quat> q = unit_quaternion(def.orientation, call);
+    if (!q) return q.error();
+    Result<std::vector<CheckedCollider>> colliders = check_colliders(world, colliders_of(def, 1.0f), false, call);
+    if (!colliders) return colliders.error();
+    uint32_t slot = world.bodies.add();
+    world.bodies.info[slot].user_data = def.user_data;
+    world.bodies.name[slot] = std::string(def.name.substr(0, max_name));
+    world.bodies.set_user_pose(slot, {def.position, q.value()});
+    store_colliders(world, slot, colliders.value());
+    world.fixed_changed = true;
+    return world.bodies.id(slot);
+}
+
+Status World::remove_body(BodyId id) {
+    WorldData& world = *data_;
+    if (!world.bodies.alive(id)) return Error{ErrorCode::stale_id, "remove_body: there is no such body any more"};
+    uint32_t slot = id.index;
+    wake_body(world, slot);  // what rested on it falls
+    remove_joints_of(world, slot);
+    if (world.bodies.info[slot].type == BodyType::fixed) world.fixed_changed = true;
+    for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot;) {
+        uint32_t next = world.colliders.info[c].next;
+        world.pairs.remove_collider(c);
+        world.colliders.shape[c] = Sphere{};
+        world.colliders.slots.remove(c);
+        c = next;
+    }
+    world.touching.clear();  // names of pairs have changed; contacts are reported again after the next step
+    world.overlaps.clear();
+    world.bodies.slots.remove(slot);
+    return {};
+}
+
+}  // namespace lendulet

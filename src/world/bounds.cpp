@@ -1,0 +1,73 @@
+// Stage 1: where every collider is, and the box that holds it through the step.
+#include "world/world_data.h"
+
+namespace lendulet {
+namespace {
+
+constexpr int colliders_per_task = 256;
+
+// The margin between two colliders is the sum of half of each one's.
+float half_margin(const ColliderInfo& info) { return 0.5f * minimum(contact_margin, 0.25f * info.radius); }
+
+void set_box(BroadBox& box, uint32_t index, Position lower, Position upper) {
+    box = {{lower.x, lower.y, lower.z}, index, {upper.x, upper.y, upper.z}, 0u};
+}
+
+// Box of a collider now, grown by `grow` and swept along `sweep`.
+void bound_collider(const WorldData& world, uint32_t slot, Vec3 sweep, float grow, BroadBox& box) {
+    const ColliderPlace& place = world.colliders.place[slot];
+    CentredBox b = bounds(world.colliders.geometry[slot], place.rotation);
+    Position centre = world.bodies.pose[world.colliders.info[slot].body].position + (place.arm + b.centre);
+    Vec3 half = b.half + Vec3{grow, grow, grow};
+    Position lower = centre - half, upper = centre + half;
+    lower = lower + minimum(sweep, Vec3{});
+    upper = upper + maximum(sweep, Vec3{});
+    set_box(box, slot, lower, upper);
+}
+
+void bound_moving(WorldData& world, uint32_t slot, float dt, BroadBox& box) {
+    const ColliderInfo& info = world.colliders.info[slot];
+    uint32_t body = info.body;
+    world.colliders.update_place(slot, world.bodies.pose[body].orientation);
+    float grow = half_margin(info);
+    Vec3 sweep;
+    if (!world.bodies.info[body].asleep) {
+        sweep = dt * world.bodies.velocity(body);
+        float fall = 0.5f * dt * dt * length(world.config.gravity) * absolute(world.bodies.info[body].gravity_factor);
+        // A turning shape reaches no farther than its radius about the body's centre, nor than the arc it runs through.
+        float reach = length(world.colliders.place[slot].arm) + info.radius;
+        float turn = dt * length(world.bodies.angular_velocity(body));
+        grow += fall + (turn > 0.05f ? minimum(turn, 2.0f) * reach : 0.0f);
+    }
+    bound_collider(world, slot, sweep, grow, box);
+}
+
+}  // namespace
+
+void update_bounds(WorldData& world, float dt) {
+    ColliderStore& colliders = world.colliders;
+    if (world.fixed_changed) {
+        world.fixed_boxes.clear();
+        for (uint32_t slot : colliders.slots.order()) {
+            uint32_t body = colliders.info[slot].body;
+            if (world.bodies.info[body].type != BodyType::fixed) continue;
+            colliders.update_place(slot, world.bodies.pose[body].orientation);
+            bound_collider(world, slot, {}, half_margin(colliders.info[slot]), world.fixed_boxes.push_back({}));
+        }
+        world.broad_phase.set_fixed(world.fixed_boxes.data(), world.fixed_boxes.count());
+        world.fixed_changed = false;
+    }
+    world.moving_boxes.clear();
+    for (uint32_t slot : colliders.slots.order())
+        if (world.bodies.info[colliders.info[slot].body].type != BodyType::fixed)
+            world.moving_boxes.push_back({{}, slot, {}, 0u});
+    world.tasks.for_each(world.moving_boxes.count(), colliders_per_task, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) {
+            BroadBox& box = world.moving_boxes[static_cast<size_t>(i)];
+            bound_moving(world, box.index, dt, box);
+        }
+    });
+    world.broad_phase.set_moving(world.moving_boxes.data(), world.moving_boxes.count());
+}
+
+}  // namespace lendulet

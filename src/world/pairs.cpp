@@ -1,0 +1,82 @@
+#include "world/pairs.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace lendulet {
+namespace {
+
+bool precedes(const BoxPair& a, const BoxPair& b) { return a.a != b.a ? a.a < b.a : a.b < b.b; }
+uint64_t key(const ColliderPair& p) { return uint64_t{p.a} << 32 | p.b; }
+
+constexpr int digit_bits = 11;
+constexpr uint32_t radix = 1u << digit_bits;
+
+}  // namespace
+
+// Least significant digit first: by b, then by a. Comparison sort below the size where counting pays.
+void PairTable::sort(Array<BoxPair>& boxes) {
+    if (boxes.size() < 512) {
+        std::sort(boxes.begin(), boxes.end(), precedes);  // order: total
+        return;
+    }
+    uint32_t top = 0;
+    for (const BoxPair& p : boxes) top |= p.a | p.b;
+    int digits = (std::bit_width(top) + digit_bits - 1) / digit_bits;
+    scratch_.resize_unset(boxes.size());
+    for (int pass = 0; pass < 2 * digits; ++pass) {
+        int shift = pass % digits * digit_bits;
+        bool by_b = pass < digits;
+        counts_.assign(radix, 0u);
+        for (const BoxPair& p : boxes) ++counts_[((by_b ? p.b : p.a) >> shift) & (radix - 1)];
+        uint32_t sum = 0;
+        for (uint32_t& c : counts_) {
+            uint32_t n = c;
+            c = sum;
+            sum += n;
+        }
+        for (const BoxPair& p : boxes) scratch_[counts_[((by_b ? p.b : p.a) >> shift) & (radix - 1)]++] = p;
+        boxes.swap(scratch_);
+    }
+}
+
+void PairTable::update(Array<BoxPair>& boxes) {
+    sort(boxes);
+    now.swap(before);
+    now.resize_unset(boxes.size());
+    // Two passes over the sorted lists: ended pairs first, so that new pairs can take over their caches.
+    size_t j = 0;
+    for (ColliderPair& old : before) {
+        while (j < boxes.size() && (uint64_t{boxes[j].a} << 32 | boxes[j].b) < key(old)) ++j;
+        bool goes_on = j < boxes.size() && boxes[j].a == old.a && boxes[j].b == old.b;
+        if (!goes_on) free_caches.push_back(old.cache), old.cache = no_box;
+    }
+    j = 0;
+    for (size_t i = 0; i < boxes.size(); ++i) {
+        ColliderPair p{boxes[i].a, boxes[i].b, 0, 0, 0, 0};
+        while (j < before.size() && key(before[j]) < key(p)) ++j;
+        if (j < before.size() && key(before[j]) == key(p)) {
+            p = before[j];  // `first_record` and `count` still name the old records: read by the narrow phase
+        } else {
+            if (free_caches.empty()) {
+                free_caches.push_back(static_cast<uint32_t>(caches.size()));
+                caches.push_back(PairCache{});
+            }
+            p.cache = free_caches.back();
+            free_caches.pop_back();
+            caches[p.cache] = PairCache{};
+        }
+        now[i] = p;
+    }
+}
+
+void PairTable::remove_collider(uint32_t slot) {
+    size_t kept = 0;
+    for (const ColliderPair& p : now) {
+        if (p.a == slot || p.b == slot) free_caches.push_back(p.cache);
+        else now[kept++] = p;
+    }
+    now.resize_unset(kept);
+}
+
+}  // namespace lendulet

@@ -1,0 +1,21 @@
+// Checks of the caller's data at the door. Every refusal names the call, the argument and what is allowed.
+#pragma once
+
+#include <string>
+
+#include "lendulet/math.h"
+#include "lendulet/result.h"
+
+namespace lendulet {
+
+inline bool is_finite(float x) { return x - x == 0.0f; }
+inline bool is_finite(Vec3 v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
+
+// The normalised quaternion where its length is 1 within 1e-3, else bad_rotation or non_finite.
+Result<Quat> unit_quaternion(Quat q, const char* call);
+// Finite and within the extent of the world.
+Status valid_position(Position p, const char* call);
+// Number as text for messages.
+std::string text(float value);
+
+}  // namespace lendulet

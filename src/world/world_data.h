@@ -1,0 +1,92 @@
+// Everything a world owns. The stages of a step are free functions over it, listed in step.cpp.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/memory.h"
+#include "base/tasks.h"
+#include "broad_phase/broad_phase.h"
+#include "dynamics/body_store.h"
+#include "dynamics/collider_store.h"
+#include "dynamics/joint_store.h"
+#include "lendulet/world.h"
+#include "solver/bodies.h"
+#include "solver/contact.h"
+#include "solver/solver.h"
+#include "world/pairs.h"
+
+namespace lendulet {
+
+// A stretch of records.
+struct OldPlace {
+    uint32_t first;
+    uint32_t count;
+};
+
+struct WorldData {
+    explicit WorldData(const WorldConfig& settings);
+
+    WorldConfig config;
+    Memory memory;
+    TaskPool tasks;
+    BodyStore bodies;
+    ColliderStore colliders;
+    JointStore joints;
+
+    // Bounds of colliders, by who moves, with the collider's slot as index.
+    BroadPhase broad_phase;
+    Array<BroadBox> moving_boxes, fixed_boxes;
+    bool fixed_changed = true;         // static colliders came, went or moved
+    Array<BoxPair> box_pairs;
+    PairTable pairs;
+
+    // Manifolds of this step and the one before; each pair has its own stretch.
+    Array<ContactRecord> records, old_records;
+    Array<OldPlace> old_places;
+    Array<uint32_t> touching;          // records with points, in order
+    Array<uint32_t> active;            // those of them that are solved: at least one body awake
+    Array<Overlap> overlaps;
+    Array<uint8_t> trigger_hits;       // by pair
+
+    // This step's awake bodies, packed for the solver.
+    Array<uint32_t> awake;             // slots, in order of slots
+    SolverBodies solver_bodies;
+    Solver solver;
+    Array<uint32_t> island_parent;     // union-find over body slots
+    Array<float> island_still;
+
+    float last_h = 0.0f;               // substep that the stored impulses belong to
+    bool in_step = false;
+    double time = 0.0;
+    uint64_t steps = 0;
+    StepStatistics statistics{};
+    std::vector<std::string> warnings;
+};
+
+// The stages of a step, in order; each reads what those before it left.
+void update_bounds(WorldData& world, float dt);
+void find_pairs(WorldData& world);
+void find_contacts(WorldData& world, float dt);
+void update_islands(WorldData& world, float dt);
+void pack_bodies(WorldData& world, float h);
+void pack_contacts(WorldData& world, float h);
+void unpack_bodies(WorldData& world, float dt);
+void finish_step(WorldData& world, float dt);
+
+// Removes the joints of a body that is about to be removed.
+void remove_joints_of(WorldData& world, uint32_t body);
+
+// Wakes a body and everything that rests on it.
+void wake_body(WorldData& world, uint32_t slot);
+
+// Speeds beyond these are cut (and counted): positions in single precision do not resolve such motion.
+inline constexpr float max_speed = 1e4f;           // m/s
+inline constexpr float max_angular_speed = 3e3f;   // rad/s, about 200 turns per step at 60 Hz
+// Surfaces this close are already given contact points, so that resting contacts are not found anew every step.
+inline constexpr float contact_margin = 0.02f;     // m; less for small bodies
+// Positions beyond this have a resolution worse than a millimetre-sized contact needs.
+inline constexpr float world_extent = 1e7f;        // m
+
+}  // namespace lendulet
