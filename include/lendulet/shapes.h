@@ -23,7 +23,7 @@ struct Capsule {
     float radius = 0.5f;
 };
 
-// The convex hull of two spheres centred at y = -half_height and y = +half_height.
+// The convex hull of two spheres centred at y = -half_height and y = +half_height; one of the radii may be 0.
 struct TaperedCapsule {
     float half_height = 0.5f;
     float bottom_radius = 0.5f, top_radius = 0.25f;
@@ -64,15 +64,18 @@ struct MeshData;
 class ConvexHull {
 public:
     // Builds the hull of `points` (local frame, m). Interior and duplicate points are dropped. Fewer than four points,
-    // or points in one plane or line (within 1e-5 of their size), give ErrorCode::degenerate_hull; more than
-    // 65535 vertices left give too_many_vertices; non-finite coordinates give non_finite.
+    // or points in one plane or line (within 2e-6 of their size), give ErrorCode::degenerate_hull; more than
+    // 65535 vertices left give too_many_vertices; non-finite coordinates give non_finite; coordinates beyond 1e5 m, a
+    // size below 1e-4 m or a negative rounding give bad_extent. Every point lies in the hull within 1e-5 of their size;
+    // faces that agree in one plane within that tolerance become one polygon. O(n log n).
     // Method: Barber, Dobkin, Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", ACM TOMS 22 (1996).
     static Result<ConvexHull> from_points(std::span<const Vec3> points, float rounding = 0.0f);
 
     std::span<const Vec3> vertices() const;  // corners of the hull, local frame, m
     int face_count() const;
     float rounding() const { return rounding_; }  // radius of the sphere swept around the hull, m
-    const HullData& data() const { return *data_; }
+    bool is_built() const { return data_ != nullptr; }  // false for a default-constructed one, which no body accepts
+    const HullData& data() const { return *data_; }     // only where it is built
 
 private:
     std::shared_ptr<const HullData> data_;
@@ -90,12 +93,14 @@ struct Plane {
 class TriangleMesh {
 public:
     // `indices` holds three per triangle. An empty mesh, an index out of range or a non-finite vertex gives
-    // ErrorCode::bad_mesh naming the index; triangles without area are dropped.
+    // ErrorCode::bad_mesh naming the index, and so do coordinates beyond 1e5 m; triangles without area are dropped.
+    // O(n log n).
     static Result<TriangleMesh> from_triangles(std::span<const Vec3> vertices, std::span<const uint32_t> indices);
 
     int triangle_count() const;
     int dropped_triangles() const;  // how many had no area
-    const MeshData& data() const { return *data_; }
+    bool is_built() const { return data_ != nullptr; }  // false for a default-constructed one, which no body accepts
+    const MeshData& data() const { return *data_; }     // only where it is built
 
 private:
     std::shared_ptr<const MeshData> data_;
