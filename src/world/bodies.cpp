@@ -170,6 +170,14 @@ Status check_motion(const RigidBodyDef& def, const char* call) {
     return {};
 }
 
+template <class T, class Keep>
+void keep_if(Array<T>& array, Keep&& keep) {
+    size_t kept = 0;
+    for (const T& x : array)
+        if (keep(x)) array[kept++] = x;
+    array.resize_unset(kept);
+}
+
 }  // namespace
 
 Result<BodyId> World::add_rigid_body(const RigidBodyDef& def) {
@@ -240,12 +248,13 @@ Status World::remove_body(BodyId id) {
     for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot;) {
         uint32_t next = world.colliders.info[c].next;
         world.pairs.remove_collider(c);
-        world.colliders.shape[c] = Sphere{};
+        world.colliders.shape[c] = Sphere{};  // lets go of shared hulls and meshes
+        world.colliders.info[c].body = no_slot;
         world.colliders.slots.remove(c);
         c = next;
     }
-    world.touching.clear();  // names of pairs have changed; contacts are reported again after the next step
-    world.overlaps.clear();
+    keep_if(world.touching, [&](uint32_t i) { return world.pairs.now[world.records[i].pair].cache != no_cache; });
+    keep_if(world.overlaps, [&](const Overlap& o) { return o.trigger_body != id && o.other_body != id; });
     world.bodies.slots.remove(slot);
     return {};
 }

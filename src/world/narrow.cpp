@@ -145,9 +145,12 @@ void collide_pair(WorldData& world, uint32_t index, uint32_t old_first, int old_
 
 }  // namespace
 
-void find_pairs(WorldData& world) {
+void find_box_pairs(WorldData& world) {
     world.box_pairs.clear();
     world.broad_phase.find_pairs(world.tasks, world.box_pairs);
+}
+
+void match_pairs(WorldData& world) {
     size_t kept = 0;
     for (const BoxPair& p : world.box_pairs)
         if (wanted(world, p)) world.box_pairs[kept++] = p;

@@ -141,7 +141,7 @@ void pack_bodies(WorldData& world, float h) {
     });
 }
 
-void pack_contacts(WorldData& world, float) {
+void pack_contacts(WorldData& world) {
     world.active.clear();
     for (uint32_t i : world.touching) {
         ContactRecord& r = world.records[i];

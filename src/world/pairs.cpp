@@ -49,13 +49,13 @@ void PairTable::update(Array<BoxPair>& boxes) {
     for (ColliderPair& old : before) {
         while (j < boxes.size() && (uint64_t{boxes[j].a} << 32 | boxes[j].b) < key(old)) ++j;
         bool goes_on = j < boxes.size() && boxes[j].a == old.a && boxes[j].b == old.b;
-        if (!goes_on) free_caches.push_back(old.cache), old.cache = no_box;
+        if (!goes_on && old.cache != no_cache) free_caches.push_back(old.cache), old.cache = no_cache;
     }
     j = 0;
     for (size_t i = 0; i < boxes.size(); ++i) {
         ColliderPair p{boxes[i].a, boxes[i].b, 0, 0, 0, 0};
         while (j < before.size() && key(before[j]) < key(p)) ++j;
-        if (j < before.size() && key(before[j]) == key(p)) {
+        if (j < before.size() && key(before[j]) == key(p) && before[j].cache != no_cache) {
             p = before[j];  // `first_record` and `count` still name the old records: read by the narrow phase
         } else {
             if (free_caches.empty()) {
@@ -71,12 +71,8 @@ void PairTable::update(Array<BoxPair>& boxes) {
 }
 
 void PairTable::remove_collider(uint32_t slot) {
-    size_t kept = 0;
-    for (const ColliderPair& p : now) {
-        if (p.a == slot || p.b == slot) free_caches.push_back(p.cache);
-        else now[kept++] = p;
-    }
-    now.resize_unset(kept);
+    for (ColliderPair& p : now)
+        if ((p.a == slot || p.b == slot) && p.cache != no_cache) free_caches.push_back(p.cache), p.cache = no_cache;
 }
 
 }  // namespace lendulet

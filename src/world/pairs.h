@@ -9,9 +9,11 @@
 
 namespace lendulet {
 
+inline constexpr uint32_t no_cache = ~0u;
+
 struct ColliderPair {
     uint32_t a, b;            // collider slots, a < b
-    uint32_t cache;           // index into PairTable::caches
+    uint32_t cache;           // index into PairTable::caches; no_cache: a collider was removed since the step
     uint32_t first_record;    // of this pair in the step's records; room for `capacity`
     uint16_t capacity, count; // manifolds: room, and those found
 };
@@ -28,7 +30,7 @@ struct PairTable {
     // Replaces `now` by `boxes` (which it sorts) and carries caches and records of pairs that go on over from the list
     // before, which moves to `before`.
     void update(Array<BoxPair>& boxes);
-    // Forgets pairs with a collider that is removed.
+    // Marks pairs with a collider that is removed, so that the next owner of its slot does not inherit them.
     void remove_collider(uint32_t slot);
 
 private:

@@ -67,11 +67,14 @@ struct WorldData {
 
 // The stages of a step, in order; each reads what those before it left.
 void update_bounds(WorldData& world, float dt);
-void find_pairs(WorldData& world);
+void find_box_pairs(WorldData& world);
+void match_pairs(WorldData& world);
 void find_contacts(WorldData& world, float dt);
 void update_islands(WorldData& world, float dt);
 void pack_bodies(WorldData& world, float h);
-void pack_contacts(WorldData& world, float h);
+void pack_contacts(WorldData& world);
+void pack_joints(WorldData& world, float h);
+void unpack_joints(WorldData& world);
 void unpack_bodies(WorldData& world, float dt);
 void finish_step(WorldData& world, float dt);
 

@@ -1,0 +1,104 @@
+// One step of a world, as a table of contents.
+#include <chrono>
+
+#include "world/validate.h"
+#include "world/world_data.h"
+
+namespace lendulet {
+namespace {
+
+constexpr float longest_step = 1.0f;  // s; longer ones are cut
+
+// Time since the last lap, booked to a stage.
+class StageClock {
+public:
+    explicit StageClock(StepStatistics& statistics) : statistics_(statistics) {
+        for (double& ms : statistics_.stage_ms) ms = 0.0;
+        statistics_.total_ms = 0.0;
+    }
+    void lap(Stage stage) {
+        auto now = Clock::now();
+        double ms = std::chrono::duration<double, std::milli>(now - last_).count();
+        statistics_.stage_ms[static_cast<int>(stage)] += ms;
+        statistics_.total_ms += ms;
+        last_ = now;
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    StepStatistics& statistics_;
+    Clock::time_point last_ = Clock::now();
+};
+
+void step(WorldData& world, float dt) {
+    TaskPool::Session session(world.tasks);
+    StageClock clock(world.statistics);
+    const SolverSettings settings{dt, world.config.solver_steps, length(world.config.gravity)};
+    const float h = dt / static_cast<float>(settings.substeps);
+
+    update_bounds(world, dt);
+    clock.lap(Stage::bounds);
+    find_box_pairs(world);
+    clock.lap(Stage::broad_phase);
+    match_pairs(world);
+    clock.lap(Stage::pairs);
+    find_contacts(world, dt);
+    clock.lap(Stage::narrow_phase);
+    update_islands(world, dt);
+    clock.lap(Stage::islands);
+    pack_bodies(world, h);
+    pack_contacts(world);
+    pack_joints(world, h);
+    world.solver.prepare(world.tasks, world.solver_bodies, world.records.data(), world.active.data(), world.active.count());
+    clock.lap(Stage::prepare);
+    world.solver.solve(world.tasks, settings, world.solver_bodies, world.records.data());
+    clock.lap(Stage::solve);
+    world.solver.store(world.tasks, world.records.data());
+    unpack_joints(world);
+    unpack_bodies(world, dt);
+    finish_step(world, dt);
+    clock.lap(Stage::finish);
+}
+
+}  // namespace
+
+void finish_step(WorldData& world, float dt) {
+    StepStatistics& s = world.statistics;
+    s.bodies = world.bodies.slots.count();
+    s.awake_bodies = world.awake.count();
+    s.pairs = world.pairs.now.count();
+    s.manifolds = world.touching.count();
+    s.contact_points = 0;
+    s.max_penetration = 0.0f;
+    for (uint32_t i : world.touching) {
+        const ContactRecord& r = world.records[i];
+        for (int j = 0; j < r.point_count; ++j) s.max_penetration = maximum(s.max_penetration, -r.points[j].separation);
+        for (int j = 0; j < r.point_count; ++j) s.contact_points += r.points[j].separation <= 0.0f;
+    }
+    s.colours = world.solver.colour_count();
+    s.overflow_manifolds = world.solver.overflow();
+    s.joints = world.joints.count();
+    s.bytes_per_body = BodyStore::bytes_per_body() + sizeof(BodyState) + sizeof(BodyInertia) + sizeof(BodyMotion);
+    s.bytes_per_manifold = 2 * sizeof(ContactRecord) + sizeof(ColliderPair) + sizeof(PairCache) +
+                           (world.active.empty() ? 0 : world.solver.row_bytes() / world.active.size());
+    world.last_h = dt / static_cast<float>(world.config.solver_steps);
+    world.time += dt;
+    ++world.steps;
+}
+
+Status World::update(float dt) {
+    WorldData& world = *data_;
+    if (!is_finite(dt) || dt < 0.0f)
+        return Error{ErrorCode::bad_time_step, "update: dt is " + text(dt) + ", must be finite and not negative"};
+    if (world.in_step) return Error{ErrorCode::locked, "update: called from inside a step"};
+    if (dt == 0.0f) return {};
+    world.in_step = true;
+    int parts = 1;
+    while (dt > longest_step * static_cast<float>(parts) && parts < 1000) ++parts;
+    float part = minimum(dt / static_cast<float>(parts), longest_step);
+    for (int i = 0; i < parts; ++i) step(world, part);
+    world.in_step = false;
+    return {};
+}
+
+}  // namespace lendulet

@@ -1,0 +1,204 @@
+// Worlds: settings, handles, iteration, figures.
+#include "lendulet/world.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "base/hash.h"
+#include "world/validate.h"
+#include "world/world_data.h"
+
+namespace lendulet {
+namespace {
+
+TaskPool::Hook task_hook(const WorldConfig& c) { return {c.tasks.user, c.tasks.workers, c.tasks.parallel_for}; }
+
+Error bad_config(std::string what) { return {ErrorCode::bad_config, "build: " + std::move(what)}; }
+
+Status check_config(const WorldConfig& c) {
+    if (!is_finite(c.gravity)) return Error{ErrorCode::non_finite, "build: gravity must be finite"};
+    if (c.solver_steps < 1 || c.solver_steps > 64)
+        return bad_config("solver steps are " + std::to_string(c.solver_steps) + ", must be 1 to 64");
+    if (!(c.rigid_separation_speed > 0.0f) || !is_finite(c.rigid_separation_speed))
+        return bad_config("rigid separation speed is " + text(c.rigid_separation_speed) + ", must be positive");
+    if (!(c.static_separation_speed > 0.0f) || !is_finite(c.static_separation_speed))
+        return bad_config("static separation speed is " + text(c.static_separation_speed) + ", must be positive");
+    if (!(c.friction >= 0.0f) || !is_finite(c.friction)) return bad_config("friction is " + text(c.friction) + ", must not be negative");
+    if (!(c.restitution >= 0.0f && c.restitution <= 1.0f))
+        return bad_config("bounciness is " + text(c.restitution) + ", must be between 0 and 1");
+    if (c.workers < 1 || c.workers > 64) return bad_config("workers are " + std::to_string(c.workers) + ", must be 1 to 64");
+    if (c.width != 0 && c.width != 1 && c.width != 4 && c.width != 8 && c.width != 16)
+        return bad_config("width is " + std::to_string(c.width) + ", must be 1, 4, 8 or 16");
+    if ((c.allocator.allocate == nullptr) != (c.allocator.free == nullptr))
+        return bad_config("an allocator hook needs both allocate and free");
+    return {};
+}
+
+}  // namespace
+
+WorldData::WorldData(const WorldConfig& settings)
+    : config(settings),
+      memory{settings.allocator.user, settings.allocator.allocate, settings.allocator.free},
+      tasks(settings.workers, task_hook(settings)),
+      bodies(&memory),
+      colliders(&memory),
+      joints(&memory),
+      broad_phase(settings.broad_phase, &memory),
+      moving_boxes(&memory),
+      fixed_boxes(&memory),
+      box_pairs(&memory),
+      pairs(&memory),
+      records(&memory),
+      old_records(&memory),
+      old_places(&memory),
+      touching(&memory),
+      active(&memory),
+      overlaps(&memory),
+      trigger_hits(&memory),
+      awake(&memory),
+      solver_bodies(&memory),
+      solver(&memory, settings.width),
+      island_parent(&memory),
+      island_still(&memory) {}
+
+namespace detail {
+void fail(const Error& error) {
+    std::fprintf(stderr, "lendulet: %s\n", error.message.c_str());
+    std::exit(2);
+}
+}  // namespace detail
+
+Result<World> WorldBuilder::build() const {
+    if (Status s = check_config(config_); !s) return s.error();
+    WorldConfig config = config_;
+    if (config.width == 0) config.width = native_width();
+    return World(std::make_unique<WorldData>(config));
+}
+
+World::World(std::unique_ptr<WorldData> data) : data_(std::move(data)) {}
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+World::~World() = default;
+
+bool World::alive(BodyId id) const { return data_->bodies.alive(id); }
+RigidBodyRef World::get(BodyId id) {
+    if (!alive(id)) detail::fail({ErrorCode::stale_id, "get: there is no such body any more"});
+    if (data_->bodies.info[id.index].type == BodyType::fixed)
+        detail::fail({ErrorCode::stale_id, "get: that body is static; use get_static"});
+    return RigidBodyRef(*data_, id.index);
+}
+const RigidBodyRef World::get(BodyId id) const { return const_cast<World*>(this)->get(id); }
+StaticBodyRef World::get_static(BodyId id) const {
+    if (!alive(id)) detail::fail({ErrorCode::stale_id, "get_static: there is no such body any more"});
+    return StaticBodyRef(*data_, id.index);
+}
+
+Status World::set_gravity(Vec3 gravity) {
+    if (!is_finite(gravity)) return Error{ErrorCode::non_finite, "set_gravity: gravity must be finite"};
+    data_->config.gravity = gravity;
+    for (uint32_t slot : data_->bodies.slots.order())
+        if (data_->bodies.info[slot].asleep) wake_body(*data_, slot);
+    return {};
+}
+const WorldConfig& World::config() const { return data_->config; }
+const StepStatistics& World::statistics() const { return data_->statistics; }
+double World::time() const { return data_->time; }
+uint64_t World::step_count() const { return data_->steps; }
+
+int World::body_count() const { return data_->bodies.slots.count(); }
+BodyId World::body(int index) const {
+    if (index < 0 || index >= body_count()) return {};
+    return data_->bodies.id(data_->bodies.slots.in_order(index));
+}
+int World::contact_count() const { return data_->touching.count(); }
+BodyId World::body_of(ColliderId id) const {
+    return data_->colliders.alive(id) ? data_->bodies.id(data_->colliders.info[id.index].body) : BodyId{};
+}
+std::span<const Overlap> World::overlaps() const { return {data_->overlaps.data(), data_->overlaps.size()}; }
+std::span<const std::string> World::warnings() const { return data_->warnings; }
+
+Contact World::contact(int index) const {
+    const WorldData& world = *data_;
+    if (index < 0 || index >= contact_count()) return Contact{};
+    const ContactRecord& r = world.records[world.touching[static_cast<size_t>(index)]];
+    const ColliderPair& p = world.pairs.now[r.pair];
+    bool flipped = (r.flags & contact_flipped) != 0;
+    uint32_t a = flipped ? p.b : p.a, b = flipped ? p.a : p.b;
+    uint32_t body_a = world.colliders.info[a].body, body_b = world.colliders.info[b].body;
+    Contact c{};
+    c.body_a = world.bodies.id(body_a);
+    c.body_b = world.bodies.id(body_b);
+    c.collider_a = world.colliders.id(a);
+    c.collider_b = world.colliders.id(b);
+    c.normal = {r.normal[0], r.normal[1], r.normal[2]};
+    c.friction_impulse = {r.friction_impulse[0], r.friction_impulse[1], r.friction_impulse[2]};
+    c.point_count = r.point_count;
+    c.triangle = r.triangle;
+    // The points were found at the start of the step; they ride with the body that they belong to.
+    Position origin = world.bodies.pose[body_b].position - Vec3{r.arm_offset[0], r.arm_offset[1], r.arm_offset[2]};
+    for (int j = 0; j < r.point_count; ++j) {
+        const ContactPointRecord& q = r.points[j];
+        c.points[j] = {origin + Vec3{q.position[0], q.position[1], q.position[2]}, q.separation, r.normal_impulse[j]};
+    }
+    return c;
+}
+
+double World::kinetic_energy() const {
+    double sum = 0.0;
+    for (uint32_t slot : data_->bodies.slots.order())
+        if (data_->bodies.info[slot].type == BodyType::dynamic) {
+            const BodyMomenta& m = data_->bodies.momenta[slot];
+            sum += 0.5 * (static_cast<double>(dot(m.p, data_->bodies.velocity(slot))) + dot(m.L, data_->bodies.angular_velocity(slot)));
+        }
+    return sum;
+}
+
+double World::potential_energy() const {
+    double sum = 0.0;
+    const Vec3 g = data_->config.gravity;
+    for (uint32_t slot : data_->bodies.slots.order()) {
+        const BodyInfo& info = data_->bodies.info[slot];
+        if (info.type != BodyType::dynamic) continue;
+        Position x = data_->bodies.pose[slot].position;
+        double along = static_cast<double>(g.x) * x.x + static_cast<double>(g.y) * x.y + static_cast<double>(g.z) * x.z;
+        sum -= static_cast<double>(data_->bodies.mass[slot].mass) * info.gravity_factor * along;
+    }
+    return sum;
+}
+
+Momentum World::momentum() const {
+    Momentum total{};
+    for (uint32_t slot : data_->bodies.slots.order()) {
+        if (data_->bodies.info[slot].type != BodyType::dynamic) continue;
+        const BodyMomenta& m = data_->bodies.momenta[slot];
+        Position at = data_->bodies.pose[slot].position;
+        double x[3] = {at.x, at.y, at.z}, p[3] = {m.p.x, m.p.y, m.p.z}, L[3] = {m.L.x, m.L.y, m.L.z};
+        for (int i = 0; i < 3; ++i) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            total.linear[i] += p[i];
+            total.angular[i] += L[i] + (x[j] * p[k] - x[k] * p[j]);
+        }
+    }
+    return total;
+}
+
+uint64_t World::hash() const {
+    const WorldData& world = *data_;
+    uint64_t h = hash_combine(0, world.bodies.slots.order().size());
+    for (uint32_t slot : world.bodies.slots.order()) {
+        const Pose& pose = world.bodies.pose[slot];
+        const BodyMomenta& m = world.bodies.momenta[slot];
+        float values[13] = {pose.position.x, pose.position.y, pose.position.z, pose.orientation.x, pose.orientation.y,
+                            pose.orientation.z, pose.orientation.w, m.p.x, m.p.y, m.p.z, m.L.x, m.L.y, m.L.z};
+        h = hash_floats(h, values, 13);
+    }
+    for (uint32_t i : world.touching) {
+        const ContactRecord& r = world.records[i];
+        h = hash_floats(h, r.normal_impulse, r.point_count);
+        h = hash_floats(h, r.friction_impulse, 3);
+        h = hash_floats(h, &r.twist_impulse, 1);
+    }
+    return world.joints.hash(h);
+}
+
+}  // namespace lendulet
