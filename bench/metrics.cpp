@@ -80,6 +80,7 @@ struct Solid {
     const Shape* shape;
     Pose pose;
     float reach;
+    uint32_t group;  // solids of one group may overlap
 };
 
 std::vector<Solid> measured_solids(const scenes::SceneDescription& scene, const std::vector<Pose>& poses) {
@@ -90,7 +91,7 @@ std::vector<Solid> measured_solids(const scenes::SceneDescription& scene, const 
         Vec3 p = from_origin(poses[i].position);
         float reach = reach_of(body.colliders[0].shape);
         if (reach > 0.0f && std::isfinite(p.x + p.y + p.z))
-            solids.push_back({&body.colliders[0].shape, poses[i], reach});
+            solids.push_back({&body.colliders[0].shape, poses[i], reach, body.colliders[0].filter.group});
     }
     return solids;
 }
@@ -117,6 +118,7 @@ Penetration penetration(const scenes::SceneDescription& scene, const std::vector
             const Solid& b = solids[j];
             if (b.pose.position.x - b.reach > a.pose.position.x + a.reach) break;
             if (length(b.pose.position - a.pose.position) > a.reach + b.reach) continue;
+            if (a.group != 0 && a.group == b.group) continue;
             float depth = overlap(*a.shape, a.pose, *b.shape, b.pose);
             if (depth > least_overlap) depths.push_back(depth);
         }
