@@ -21,10 +21,7 @@ struct FacePoint {
 // farthest outside that triangle. Points that add less than a thousandth of the size are left out.
 int reduce_points(FacePoint* points, int count);
 
-// The face of a core for contacts along `direction` (unit, local frame): best_face() with the sides of round shapes
-// moved out to the surface. What is left in extra_radius is the radius by which such a side rolls.
-Face contact_face(const Geometry& g, Vec3 direction);
-// The same face in another frame.
+// Moves a face to another frame.
 void transform_face(const Transform& t, Face& face);
 
 // The part of the incident face over the reference face (three corners or more, counter-clockwise about its normal) not

@@ -114,19 +114,6 @@ int sides_of(const Corner* corners, int count, float slack, Side* out) {
 
 }  // namespace
 
-Face contact_face(const Geometry& g, Vec3 direction) {
-    Face face = best_face(g, direction);
-    if (face.extra_radius == 0.0f) return face;
-    // Out to the surface: along the direction from a ball's centre, at right angles to the axis from a side's.
-    Vec3 out = direction;
-    if (face.count >= 2) {
-        Vec3 axis = normalize(face.vertices[1] - face.vertices[0]);
-        out = normalize(direction - dot(axis, direction) * axis, perpendicular(axis));
-    }
-    for (int i = 0; i < face.count; ++i) face.vertices[i] += face.extra_radius * out;
-    return face;
-}
-
 void transform_face(const Transform& t, Face& face) {
     for (int i = 0; i < face.count; ++i) face.vertices[i] = t * face.vertices[i];
     face.normal = rotate(t.rotation, face.normal);

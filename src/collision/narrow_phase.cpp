@@ -11,16 +11,16 @@ bool is_capsule(const Geometry& g) { return g.kind == GeometryKind::segment; }
 bool is_box(const Geometry& g) { return g.kind == GeometryKind::box; }
 bool is_sharp_box(const Geometry& g) { return is_box(g) && g.rounding == 0.0f; }
 
-bool is_mesh(const Geometry& g) { return g.kind == GeometryKind::mesh; }
-
 // Pairs that are written for the other order: the functions take the flatter shape first.
 bool wants_swap(const CollidePair& p) {
     if (!is_convex(*p.b)) return true;
     return (is_ball(*p.a) && (is_capsule(*p.b) || is_box(*p.b)));
 }
 
-int collide_in_order(const CollidePair& p, PairCache& cache, const CollideSettings& settings, Manifold* out) {
+int collide_in_order(const CollidePair& p, PairCache& cache, const CollideSettings& settings, Manifold* out,
+                     int capacity) {
     const Geometry &a = *p.a, &b = *p.b;
+    if (a.kind == GeometryKind::mesh) return collide_mesh_convex(p, settings, out, capacity);
     if (a.kind == GeometryKind::plane) return collide_plane_convex(p, *out);
     if (is_sharp_box(a) && is_sharp_box(b)) return collide_box_box(p, cache, settings, *out);
     if (is_ball(b)) {
@@ -35,19 +35,20 @@ int collide_in_order(const CollidePair& p, PairCache& cache, const CollideSettin
 }  // namespace
 
 int collide(const CollidePair& pair, PairCache& cache, const CollideSettings& settings, Manifold* out, int capacity) {
-    if (capacity <= 0 || (!is_convex(*pair.a) && !is_convex(*pair.b)) || is_mesh(*pair.a) || is_mesh(*pair.b)) return 0;
-    if (!wants_swap(pair)) return collide_in_order(pair, cache, settings, out);
-    int count = collide_in_order(swapped(pair), cache, settings, out);
+    if (capacity <= 0 || (!is_convex(*pair.a) && !is_convex(*pair.b))) return 0;
+    if (!wants_swap(pair)) return collide_in_order(pair, cache, settings, out, capacity);
+    int count = collide_in_order(swapped(pair), cache, settings, out, capacity);
     for (int i = 0; i < count; ++i) swap_back(pair, out[i]);
     return count;
 }
 
 bool overlap(const CollidePair& pair, PairCache& cache, const CollideSettings& settings) {
-    if ((!is_convex(*pair.a) && !is_convex(*pair.b)) || is_mesh(*pair.a) || is_mesh(*pair.b)) return false;
+    if (!is_convex(*pair.a) && !is_convex(*pair.b)) return false;
     CollidePair touching = wants_swap(pair) ? swapped(pair) : pair;
     touching.margin = 0.0f;
+    if (touching.a->kind == GeometryKind::mesh) return overlap_mesh_convex(touching, settings);
     Manifold manifold;
-    return collide_in_order(touching, cache, settings, &manifold) > 0;
+    return collide_in_order(touching, cache, settings, &manifold, 1) > 0;
 }
 
 }  // namespace lendulet

@@ -235,8 +235,13 @@ uint32_t name_of_candidate(const Faces& f, const Candidates& c, int q) {
         // Even edges run along the incident face's first axis, on one side of the second.
         incident = (e & 1) == 0 ? box_edge((j + 1) % 3, corner_2[e], f.incident_sign)
                                 : box_edge((j + 2) % 3, f.incident_sign, corner_1[e]);
-        bool through_u = q < 4 ? c.enter_u[e] > c.enter_v[e] : c.leave_u[e] < c.leave_v[e];
-        reference = through_u ? box_edge((k + 2) % 3, f.sign, c.u[q]) : box_edge((k + 1) % 3, c.v[q], f.sign);
+        bool enters = q < 4;
+        bool through_u = enters ? c.enter_u[e] > c.enter_v[e] : c.leave_u[e] < c.leave_v[e];
+        // It enters through the side that it runs away from. Its direction says which side that is, also where the
+        // crossing itself is lost in round-off.
+        const Vec3& half_edge = (e & 1) == 0 ? f.edge_1 : f.edge_2;
+        float side = ((e < 2) == enters ? 1.0f : -1.0f) * (through_u ? half_edge.x : half_edge.y);
+        reference = through_u ? box_edge((k + 2) % 3, f.sign, side) : box_edge((k + 1) % 3, side, f.sign);
     }
     return f.reference_is_b ? point_id(incident, reference) : point_id(reference, incident);
 }

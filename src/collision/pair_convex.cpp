@@ -113,8 +113,8 @@ int collide_convex_convex(const CollidePair& pair, PairCache& cache, const Colli
     c.nearest = distance({pair.a, pair.b, c.b_in_a}, cache.gjk, settings.simplex, pair.margin + c.sweep);
     if (!(c.nearest.distance - c.sweep <= pair.margin)) return 0;
     Vec3 normal = c.nearest.normal;
-    c.a = contact_face(*pair.a, normal);
-    c.b = contact_face(*pair.b, rotate_inverse(c.b_in_a.rotation, -normal));
+    c.a = best_face(*pair.a, normal);
+    c.b = best_face(*pair.b, rotate_inverse(c.b_in_a.rotation, -normal));
     transform_face(c.b_in_a, c.b);
     float flat_a = flatness(c.a, normal), flat_b = flatness(c.b, -normal);
     bool from_b = flat_b > flat_a + (cache.feature == reference_b ? -reference_hysteresis : reference_hysteresis);

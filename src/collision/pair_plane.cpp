@@ -28,7 +28,7 @@ Face box_face(Vec3 half, Vec3 direction) {
 
 Face lowest_face(const Geometry& g, Vec3 down) {
     if (g.kind == GeometryKind::box) return box_face(g.size, down);
-    if (g.kind != GeometryKind::segment) return contact_face(g, down);
+    if (g.kind != GeometryKind::segment) return best_face(g, down);
     Face face;
     face.count = 2;
     face.vertices[0] = {0.0f, -g.size.y, 0.0f}, face.vertices[1] = {0.0f, g.size.y, 0.0f};

@@ -1,0 +1,329 @@
+// A mesh and a convex shape, triangle by triangle. Triangles are two-sided and push towards the side on which the
+// shape's centre is. Edges within a flat or hollow part of the surface must not be felt: a contact whose normal leans
+// across such an edge belongs to the neighbour, or gets the normal of the face.
+//
+// Faces come first: clipping the shape's face by the triangle often proves that the triangle's normal is the direction
+// of the shortest way out; only edges that can touch need GJK and EPA.
+#include "collision/mesh_manifolds.h"
+#include "collision/pair.h"
+#include "collision/triangle.h"
+#include "geometry/hull.h"
+
+namespace lendulet {
+namespace {
+
+// Cosine to the triangle's normal from which a contact is one of its face, 1.8 degrees.
+constexpr float upright = 0.9995f;
+// Sine of the angle by which a contact may lean across an edge that cannot touch and still be one of this triangle's
+// face.
+constexpr float lean_tolerance = 1e-3f;
+// Heights are equal within this part of the shape's size.
+constexpr float level = 1e-4f;
+// Cosine from which the shape's own face is the reference for an edge of the mesh.
+constexpr float flat = 0.998f;
+
+struct MeshQuery {
+    const CollidePair& pair;
+    const CollideSettings& settings;
+    const MeshData& mesh;
+    const Geometry& shape;
+    Quat turn;          // shape's frame to mesh axes
+    Vec3 position;      // of the shape, mesh frame
+    Vec3 lower, upper;  // bounds of shape and margin relative to its position, mesh axes
+    Vec3 centre;        // of the shape, relative to its position, mesh axes
+    float size;         // largest half extent, m
+
+    // The shape's face and farthest core point towards the last triangle's plane: neighbours in one plane share them.
+    Vec3 facing{};
+    Face face;
+    Vec3 lowest;
+};
+
+MeshQuery make_query(const CollidePair& pair, const CollideSettings& settings) {
+    Quat turn = conjugate(pair.rotation_a) * pair.rotation_b;
+    CentredBox box = bounds(*pair.b, turn);
+    float size = max_component(box.half);
+    float reach = pair.margin + level * size;
+    Vec3 half = box.half + Vec3{reach, reach, reach};
+    Vec3 centre = pair.b->kind == GeometryKind::hull ? rotate(turn, pair.b->hull->centroid) : Vec3{};
+    return {pair,
+            settings,
+            *pair.a->mesh,
+            *pair.b,
+            turn,
+            rotate_inverse(pair.rotation_a, pair.offset),
+            box.centre - half,
+            box.centre + half,
+            centre,
+            size,
+            {},
+            {},
+            {}};
+}
+
+// Whether the triangle's own bounds meet those of the shape: leaves hold more than one.
+bool near(const MeshQuery& q, const Triangle& t) {
+    Vec3 lower = minimum(t.vertices[0], minimum(t.vertices[1], t.vertices[2]));
+    Vec3 upper = maximum(t.vertices[0], maximum(t.vertices[1], t.vertices[2]));
+    return lower.x <= q.upper.x && lower.y <= q.upper.y && lower.z <= q.upper.z && upper.x >= q.lower.x &&
+           upper.y >= q.lower.y && upper.z >= q.lower.z;
+}
+
+void start(const Triangle& t, Vec3 normal, bool face, float radius, float follow, TriangleContact& out) {
+    out.normal = normal;
+    out.face = face;
+    out.radius = radius;
+    out.follow = follow;
+    out.original = t.original;
+    out.count = 0;
+}
+
+void add_point(Vec3 position, float separation, uint32_t id, TriangleContact& out) {
+    out.points[out.count++] = {position.x, position.y, position.z, separation, id};
+}
+
+// Whether a contact on these edges of the triangle leans across one that cannot touch.
+bool leans_across(const Triangle& t, uint8_t edges, Vec3 normal) {
+    for (int i = 0; i < 3; ++i) {
+        bool closed = (edges & ~t.touching) >> i & 1;
+        if (closed && dot(normal, t.out[i]) > lean_tolerance) return true;
+    }
+    return false;
+}
+
+// --- balls
+
+void sphere_triangle(const MeshQuery& q, const Triangle& t, TriangleContact& out) {
+    float radius = q.shape.rounding;
+    TrianglePoint nearest = nearest_on_triangle(t.vertices, {});
+    Vec3 between = -nearest.point;
+    float distance = nearest.edges == 0 ? dot(t.normal, between) : length(between);
+    if (distance - radius > q.pair.margin) return;
+    Vec3 normal = t.normal;
+    bool face = nearest.edges == 0 || !(distance > 1e-6f * radius);
+    if (!face) {
+        normal = (1.0f / distance) * between;
+        if (leans_across(t, nearest.edges, normal)) return;  // the neighbour is nearer
+        face = dot(normal, t.normal) > 1.0f - 0.5f * lean_tolerance * lean_tolerance;
+        if (face) normal = t.normal;
+    }
+    float separation = distance - radius;
+    start(t, normal, face, radius, face ? 1.0f : nearest.edges & (nearest.edges - 1) ? 0.0f : 0.5f, out);
+    add_point(nearest.point + (0.5f * separation) * normal, separation, 0, out);
+}
+
+// --- faces
+
+void look_at(MeshQuery& q, Vec3 normal) {
+    if (q.facing == normal) return;
+    q.facing = normal;
+    Vec3 down = rotate_inverse(q.turn, -normal);
+    q.face = best_face(q.shape, down);
+    transform_face({{}, q.turn}, q.face);
+    q.lowest = rotate(q.turn, support_core(q.shape, down));
+}
+
+bool over(const Triangle& t, Vec3 p) {
+    for (int i = 0; i < 3; ++i) {
+        if (dot(p - t.vertices[i], t.out[i]) > 0.0f) return false;
+    }
+    return true;
+}
+
+// The part of the shape's face over the triangle, and its lowest point where that is over it and below the face.
+void clip_to_triangle(const MeshQuery& q, const Triangle& t, ClippedFace& clipped) {
+    const MeshTriangle& names = q.mesh.triangles[t.index];
+    clip_face(face_of(t, names), q.face, false, q.pair.margin + q.shape.rounding, clipped);
+    Vec3 tip = q.lowest - clipped.origin;
+    float height = dot(tip, t.normal), deepest = 3e38f;
+    for (int i = 0; i < clipped.count; ++i) {
+        FacePoint& p = clipped.points[i];
+        deepest = minimum(deepest, p.separation);
+        // A corner of the shape has the same name over every triangle, so that it keeps it while it slides.
+        if (p.id >> 16 == face_feature(names.original)) p.id = point_id(face_feature(0), p.id & 0xffffu);
+    }
+    if (height < deepest - 10.0f * level * q.size && over(t, q.lowest)) {
+        uint32_t id = point_id(face_feature(0), face_feature(q.face.id));
+        clipped.points[clipped.count++] = {dot(tip, clipped.u), dot(tip, clipped.v), height, id};
+    }
+}
+
+void face_contact(const MeshQuery& q, const Triangle& t, const ClippedFace& clipped, TriangleContact& out) {
+    float radius = q.shape.rounding;
+    start(t, t.normal, true, radius + q.face.extra_radius, 1.0f, out);
+    for (int i = 0; i < clipped.count && i < max_clipped_points; ++i) {
+        const FacePoint& p = clipped.points[i];
+        add_point(clipped.point(p, 0.5f * (p.separation - radius)), p.separation - radius, p.id, out);
+    }
+}
+
+// Whether the triangle's normal is certainly the direction of the shortest way out. Apart, it is where the lowest point
+// of the core is over the triangle. Overlapping, take a segment from a lowest point p to the centre: leaving the
+// triangle by the side over edge i takes at least the distance of that edge from the plane of the segment and the
+// edge's direction, and the whole core needs at least as much as a segment in it.
+bool is_shortest(const MeshQuery& q, const Triangle& t, const ClippedFace& clipped) {
+    float lowest = dot(t.normal, q.lowest - clipped.origin), limit = lowest + level * q.size;
+    Vec3 p{};
+    float count = 0.0f;
+    for (int i = 0; i < clipped.count; ++i) {
+        if (clipped.points[i].separation > limit) continue;
+        p += clipped.point(clipped.points[i], clipped.points[i].separation);
+        count += 1.0f;
+    }
+    if (count == 0.0f) return false;
+    if (lowest >= 0.0f) return true;
+    p = (1.0f / count) * p;
+    Vec3 along = q.centre - p;
+    if (dot(t.normal, q.centre - clipped.origin) < -lowest) return false;
+    for (int i = 0; i < 3; ++i) {
+        Vec3 edge = t.vertices[(i + 1) % 3] - t.vertices[i];
+        Vec3 side = normalize(cross(along, edge));
+        if (absolute(dot(side, p - t.vertices[i])) < -lowest) return false;
+    }
+    return true;
+}
+
+// --- edges
+
+uint8_t edges_at(const MeshQuery& q, const Triangle& t, Vec3 point) {
+    uint8_t edges = 0;
+    for (int i = 0; i < 3; ++i) {
+        bool on = dot(point - t.vertices[i], t.out[i]) > -10.0f * level * q.size;
+        edges = static_cast<uint8_t>(edges | on << i);
+    }
+    return edges;
+}
+
+ConvexDistance distance_to(const MeshQuery& q, const Triangle& t, float limit) {
+    Geometry flat_core;
+    flat_core.kind = GeometryKind::triangle;
+    flat_core.triangle = t.vertices;
+    GjkCache cold;
+    return distance({&flat_core, &q.shape, {{}, q.turn}}, cold, q.settings.simplex, limit);
+}
+
+// Behind a closed surface's side, whose neighbour across one of these edges the shape's centre is in front of: the
+// neighbour pushes out, and pushing deeper in would be wrong.
+bool neighbour_pushes(const MeshQuery& q, const Triangle& t, uint8_t edges) {
+    const MeshTriangle& mesh_triangle = q.mesh.triangles[t.index];
+    for (int i = 0; i < 3; ++i) {
+        int32_t neighbour = mesh_triangle.neighbour[i];
+        if (!((edges & t.bent) >> i & 1) || neighbour < 0) continue;
+        float height = dot(q.mesh.normals[static_cast<uint32_t>(neighbour)], q.centre - t.vertices[i]);
+        if (t.from_behind ? height > 0.0f : height < 0.0f) return true;
+    }
+    return false;
+}
+
+// The triangle's points near the shape's own flat face; the normal is that face's.
+bool on_shape_face(const MeshQuery& q, const Triangle& t, const Face& face, TriangleContact& out) {
+    ClippedFace clipped;
+    float radius = q.shape.rounding;
+    clip_face(face, face_of(t, q.mesh.triangles[t.index]), true, q.pair.margin + radius, clipped);
+    if (clipped.count == 0) return false;
+    start(t, -clipped.normal, false, radius, 0.0f, out);
+    for (int i = 0; i < clipped.count; ++i) {
+        const FacePoint& p = clipped.points[i];
+        add_point(clipped.point(p, 0.5f * (p.separation + radius)), p.separation - radius, p.id, out);
+    }
+    return true;
+}
+
+// A line of the shape, its face for this normal, along an edge of the triangle.
+bool along_edge(const MeshQuery& q, const Triangle& t, const Face& line, uint8_t edges, Vec3 normal,
+                TriangleContact& out) {
+    for (int i = 0; i < 3; ++i) {
+        PointPair ends[2];
+        if (!(edges >> i & 1)) continue;
+        if (!shared_stretch(t.vertices[i], t.vertices[(i + 1) % 3], line.vertices[0], line.vertices[1], ends)) continue;
+        start(t, normal, false, q.shape.rounding + line.extra_radius, 0.0f, out);
+        for (uint32_t k = 0; k < 2; ++k) {
+            float separation = dot(ends[k].on_b - ends[k].on_a, normal) - q.shape.rounding;
+            if (separation > q.pair.margin) continue;
+            Vec3 position = 0.5f * (ends[k].on_a + ends[k].on_b - q.shape.rounding * normal);
+            add_point(position, separation, point_id(edge_feature(t.original, k), vertex_feature(line.ids[k])), out);
+        }
+        return out.count > 0;
+    }
+    return false;
+}
+
+void edge_contact(const MeshQuery& q, const Triangle& t, const ConvexDistance& nearest, uint8_t edges,
+                  TriangleContact& out) {
+    Vec3 normal = nearest.normal;
+    Face face = best_face(q.shape, rotate_inverse(q.turn, -normal));
+    transform_face({{}, q.turn}, face);
+    if (face.count >= 3 && dot(face.normal, normal) < -flat && on_shape_face(q, t, face, out)) return;
+    if (face.count == 2 && along_edge(q, t, face, edges, normal, out)) return;
+    float radius = q.shape.rounding;
+    bool vertex = (edges & (edges - 1)) != 0;
+    start(t, normal, false, radius + (face.count == 1 ? face.extra_radius : 0.0f), vertex ? 0.0f : 0.5f, out);
+    Vec3 position = 0.5f * (nearest.point_a + nearest.point_b - radius * normal);
+    add_point(position, nearest.distance - radius, point_id(edge_feature(t.original, edges), 0), out);
+}
+
+void convex_triangle(MeshQuery& q, const Triangle& t, TriangleContact& out) {
+    look_at(q, t.normal);
+    float limit = q.pair.margin + q.shape.rounding;
+    float height = dot(t.normal, q.lowest - t.vertices[0]);
+    if (height > limit) return;
+    ClippedFace clipped;
+    clip_to_triangle(q, t, clipped);
+    // A face within a flat or hollow part can touch with its own normal only; overlapping from behind, the way out may
+    // be across an edge.
+    bool sure = t.touching == 0 && (height >= 0.0f || !t.from_behind || t.bent == 0);
+    if (sure || is_shortest(q, t, clipped)) return face_contact(q, t, clipped, out);
+    ConvexDistance nearest = distance_to(q, t, limit);
+    if (nearest.distance > limit) return;
+    float lean = dot(nearest.normal, t.normal);
+    uint8_t edges = edges_at(q, t, nearest.point_a);
+    if (lean < upright && edges != 0) {
+        bool overlapping = nearest.distance <= 0.0f;
+        bool wrong_side = overlapping && lean < 0.0f;
+        bool closed = leans_across(t, edges, nearest.normal);
+        if (!wrong_side && !closed) return edge_contact(q, t, nearest, edges, out);
+        if (overlapping && closed && neighbour_pushes(q, t, edges)) return;
+    }
+    face_contact(q, t, clipped, out);
+}
+
+}  // namespace
+
+int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings, Manifold* out, int capacity) {
+    MeshQuery q = make_query(pair, settings);
+    MeshManifolds manifolds(10.0f * level * q.size);
+    bool ball = pair.b->kind == GeometryKind::point;
+    for_each_triangle(q.mesh, q.position + q.lower, q.position + q.upper, [&](uint32_t index) {
+        Triangle t = make_triangle(q.mesh, index, q.position, q.centre);
+        if (!near(q, t)) return;
+        TriangleContact contact;
+        if (ball) sphere_triangle(q, t, contact);
+        else convex_triangle(q, t, contact);
+        manifolds.add(contact);
+    });
+    int count = manifolds.write(out, capacity < max_mesh_manifolds ? capacity : max_mesh_manifolds);
+    for (int k = 0; k < count; ++k) {
+        Manifold& m = out[k];
+        m.normal = rotate(pair.rotation_a, m.normal);
+        for (int i = 0; i < m.count; ++i) {
+            m.points[i].position = pair.offset + rotate(pair.rotation_a, m.points[i].position);
+        }
+    }
+    return count;
+}
+
+bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& settings) {
+    MeshQuery q = make_query(pair, settings);
+    bool touching = false;
+    for_each_triangle(q.mesh, q.position + q.lower, q.position + q.upper, [&](uint32_t index) {
+        if (touching) return;
+        Triangle t = make_triangle(q.mesh, index, q.position, q.centre);
+        if (!near(q, t)) return;
+        float radius = q.shape.rounding;
+        touching = pair.b->kind == GeometryKind::point ? length(nearest_on_triangle(t.vertices, {}).point) <= radius
+                                                       : distance_to(q, t, radius).distance <= radius;
+    });
+    return touching;
+}
+
+}  // namespace lendulet
