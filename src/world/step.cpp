@@ -54,7 +54,7 @@ void step(WorldData& world, float dt) {
     world.solver.solve(world.tasks, settings, world.solver_bodies, world.records.data());
     clock.lap(Stage::solve);
     world.solver.store(world.tasks, world.records.data());
-    unpack_joints(world);
+    unpack_joints(world, h);
     unpack_bodies(world, dt);
     finish_step(world, dt);
     clock.lap(Stage::finish);

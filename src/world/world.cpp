@@ -55,6 +55,8 @@ WorldData::WorldData(const WorldConfig& settings)
       active(&memory),
       overlaps(&memory),
       trigger_hits(&memory),
+      active_joints(&memory),
+      joint_records(&memory),
       awake(&memory),
       solver_bodies(&memory),
       solver(&memory, settings.width),

@@ -14,6 +14,7 @@
 #include "lendulet/world.h"
 #include "solver/bodies.h"
 #include "solver/contact.h"
+#include "solver/joint.h"
 #include "solver/solver.h"
 #include "world/pairs.h"
 
@@ -49,6 +50,8 @@ struct WorldData {
     Array<uint32_t> active;            // those of them that are solved: at least one body awake
     Array<Overlap> overlaps;
     Array<uint8_t> trigger_hits;       // by pair
+    Array<uint32_t> active_joints;     // slots of the joints that are solved, in creation order
+    Array<JointRecord> joint_records;
 
     // This step's awake bodies, packed for the solver.
     Array<uint32_t> awake;             // slots, in order of slots
@@ -74,7 +77,7 @@ void update_islands(WorldData& world, float dt);
 void pack_bodies(WorldData& world, float h);
 void pack_contacts(WorldData& world);
 void pack_joints(WorldData& world, float h);
-void unpack_joints(WorldData& world);
+void unpack_joints(WorldData& world, float h);
 void unpack_bodies(WorldData& world, float dt);
 void finish_step(WorldData& world, float dt);
 

@@ -1,0 +1,74 @@
+#include "dynamics/joint_store.h"
+
+#include "base/hash.h"
+
+namespace lendulet {
+
+uint32_t JointStore::add(const JointInfo& joint, std::string_view joint_name) {
+    uint32_t slot = slots.add();
+    size_t n = slots.capacity();
+    info.resize(n);
+    impulses.resize(n);
+    report.resize(n);
+    next_.resize(2 * n, no_joint_link);
+    if (name.size() < n) name.resize(n);
+    info[slot] = joint;
+    impulses[slot] = {};
+    report[slot] = {};
+    name[slot] = std::string(joint_name);
+    hang(joint.body_a, 2 * slot);
+    hang(joint.body_b, 2 * slot + 1);
+    return slot;
+}
+
+void JointStore::remove(uint32_t slot) {
+    unhang(info[slot].body_a, 2 * slot);
+    unhang(info[slot].body_b, 2 * slot + 1);
+    name[slot].clear();
+    slots.remove(slot);
+}
+
+void JointStore::hang(uint32_t body, uint32_t link) {
+    if (first_.size() <= body) first_.resize(body + 1, no_joint_link);
+    next_[link] = first_[body];
+    first_[body] = link;
+}
+
+void JointStore::unhang(uint32_t body, uint32_t link) {
+    uint32_t* at = &first_[body];
+    while (*at != link) at = &next_[*at];
+    *at = next_[link];
+}
+
+bool JointStore::keeps_apart(uint32_t a, uint32_t b) const {
+    if (a >= first_.size() || b >= first_.size()) return false;
+    // Both lists at once, until the shorter one ends: a static body may carry thousands of joints.
+    uint32_t from_a = first_[a], from_b = first_[b];
+    auto joins = [&](uint32_t link, uint32_t other) {
+        const JointInfo& joint = info[link / 2];
+        return (link % 2 == 0 ? joint.body_b : joint.body_a) == other && !joint.collide_connected;
+    };
+    while (from_a != no_joint_link && from_b != no_joint_link) {
+        if (joins(from_a, b) || joins(from_b, a)) return true;
+        from_a = next_[from_a];
+        from_b = next_[from_b];
+    }
+    return false;
+}
+
+uint64_t JointStore::hash(uint64_t start) const {
+    uint64_t h = hash_combine(start, slots.order().size());
+    for (uint32_t slot : slots.order()) {
+        const JointImpulses& i = impulses[slot];
+        h = hash_floats(h, i.linear[0], 3);
+        h = hash_floats(h, i.linear[1], 3);
+        h = hash_floats(h, i.angular[0], 3);
+        h = hash_floats(h, i.angular[1], 3);
+        h = hash_floats(h, i.limit, 2);
+        h = hash_floats(h, i.motor, 2);
+        h = hash_floats(h, &i.spring, 1);
+    }
+    return h;
+}
+
+}  // namespace lendulet

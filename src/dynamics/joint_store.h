@@ -1,0 +1,92 @@
+// All joints of a world, by slot, and which bodies they hang on.
+//
+// Frames are those on the bodies' principal frames (centre of mass, principal axes), as the solver wants them. The
+// joints of each body form a list, so that a removed body takes its joints along and two bodies' joints are found
+// quickly.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/memory.h"
+#include "dynamics/slots.h"
+#include "lendulet/joint.h"
+
+namespace lendulet {
+
+inline constexpr uint32_t no_joint_link = ~0u;
+
+struct JointInfo {
+    JointType type = JointType::fixed;
+    bool collide_connected = false;
+    uint32_t body_a = 0, body_b = 0;  // slots
+    Transform frame_a{}, frame_b{};   // joint frame in each body's principal frame
+    Limit limit{};
+    Motor motor{};
+    Spring spring{};
+    float swing_limit = 4.0f;
+    Limit twist_limit{};
+    uint64_t user_data = 0;
+};
+
+// What the solver keeps of a joint from step to step: impulses on B of the last substep, those of the biased pass and
+// those of the relax pass. Linear ones along world axes (sliders: y and z of the joint frame), angular ones along the
+// joint frame's y, z and x axes, each as many as the joint locks; N s and N m s.
+struct JointImpulses {
+    float linear[2][3]{}, angular[2][3]{};
+    float limit[2]{};  // of the limited coordinate, or of a ball joint's swing and twist
+    float motor[2]{};
+    float spring = 0.0f;
+    uint32_t flags = 0;  // the solver's: how impulses were divided between both passes
+};
+
+// What the last step reported.
+struct JointReport {
+    Vec3 impulse, angular_impulse;  // on B in the last substep, world axes
+    float h = 0.0f;                 // that substep, s; 0: the joint has not been solved yet
+};
+
+struct JointStore {
+    Slots slots;
+    Array<JointInfo> info;
+    Array<JointImpulses> impulses;
+    Array<JointReport> report;
+    std::vector<std::string> name;
+
+    explicit JointStore(const Memory* memory)
+        : slots(memory), info(memory), impulses(memory), report(memory), next_(memory), first_(memory) {}
+
+    // A new joint; hangs it on both bodies.
+    uint32_t add(const JointInfo& joint, std::string_view name);
+    void remove(uint32_t slot);
+    JointId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }
+    bool alive(JointId joint) const { return slots.alive(joint.index, joint.generation); }
+    int count() const { return slots.count(); }
+
+    // The youngest joint of a body, or no_joint_link.
+    uint32_t first_of(uint32_t body) const {
+        return body < first_.size() && first_[body] != no_joint_link ? first_[body] / 2 : no_joint_link;
+    }
+    // Whether a joint between these bodies keeps their colliders from meeting. Cost: the joints of
+    // the body that has fewer.
+    bool keeps_apart(uint32_t a, uint32_t b) const;
+    // Calls link(body_a, body_b) for every joint in creation order.
+    template <class Link>
+    void for_each_link(Link&& link) const {
+        for (uint32_t slot : slots.order()) link(info[slot].body_a, info[slot].body_b);
+    }
+    // Mixes all warm-start impulses into a hash, in creation order.
+    uint64_t hash(uint64_t start) const;
+
+private:
+    // A link is 2 * joint + side; lists lead from each body through its links, youngest first.
+    void hang(uint32_t body, uint32_t link);
+    void unhang(uint32_t body, uint32_t link);
+
+    Array<uint32_t> next_;   // by link
+    Array<uint32_t> first_;  // by body
+};
+
+}  // namespace lendulet
