@@ -117,9 +117,10 @@ struct MassProperties {
     SymMat3 inertia;          // about the centre of mass, local axes, kg m^2
 };
 
-// Exact mass properties of a shape of uniform density (kg/m^3). Rounded polyhedra and cylinders are computed as the
-// Minkowski sum by its closed form where one exists (box, sphere, capsule) and as the scaled core otherwise. A plane has
-// none (mass 0); a mesh counts as its convex hull.
+// Exact mass properties of a shape of uniform density (kg/m^3), roundings included. The one approximation: a rounded
+// hull has its exact mass, but the centre of the sharp hull and the inertia of the sharp hull scaled to the rounded
+// extents. A plane has none (mass 0); a mesh counts as its convex hull, a flat mesh has none; nor has a shape that no
+// body accepts.
 MassProperties mass_properties(const Shape& shape, float density);
 
 }  // namespace lendulet

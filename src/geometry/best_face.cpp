@@ -201,6 +201,9 @@ Face best_face(const Geometry& g, Vec3 direction) {
         case GeometryKind::hull:
             hull_face(face, *g.hull, d);
             break;
+        case GeometryKind::triangle:
+            triangle_face(face, g.triangle, d);
+            break;
         case GeometryKind::plane:
         case GeometryKind::mesh:
             break;

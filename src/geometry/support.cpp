@@ -85,6 +85,10 @@ CentredBox core_bounds(const Geometry& g, Quat rotation) {
             HullExtents e = extents_along(*g.hull, {t.x, t.y, t.z});
             return from_limits(e.lower, e.upper);
         }
+        case GeometryKind::triangle: {
+            Vec3 a = r * g.triangle[0], b = r * g.triangle[1], c = r * g.triangle[2];
+            return from_limits(minimum(minimum(a, b), c), maximum(maximum(a, b), c));
+        }
         case GeometryKind::plane:
             return {{}, {infinity, infinity, infinity}};
         case GeometryKind::mesh: {
@@ -110,6 +114,8 @@ Vec3 support_core(const Geometry& g, Vec3 d) {
             return support_tapered_cylinder(g.size, d);
         case GeometryKind::hull:
             return g.hull->vertices[support_vertex(*g.hull, d)];
+        case GeometryKind::triangle:
+            return support_triangle(g.triangle, d);
         case GeometryKind::point:
         case GeometryKind::plane:
         case GeometryKind::mesh:
@@ -139,6 +145,8 @@ float bounding_radius(const Geometry& g) {
             return maximum(end(g.size.x), end(g.size.z)) + g.rounding;
         case GeometryKind::hull:
             return g.hull->radius + g.rounding;
+        case GeometryKind::triangle:
+            return maximum(length(g.triangle[0]), maximum(length(g.triangle[1]), length(g.triangle[2]))) + g.rounding;
         case GeometryKind::plane:
             return infinity;
         case GeometryKind::mesh:
