@@ -1,0 +1,121 @@
+// The command line: options, their names and their checks. Nothing else of the program knows CLI11.
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "apps/lendulet/commands.h"
+#include "io/file.h"
+
+namespace lendulet::cli {
+
+namespace {
+
+// Thrown by option callbacks; becomes the one sentence.
+struct BadOption {
+    std::string sentence;
+};
+
+std::optional<double> parse_decimal(std::string_view text) {
+    double value = 0.0;
+    auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+// A decimal number, or a fraction of two.
+double parse_number(const std::string& option, const std::string& text) {
+    size_t slash = text.find('/');
+    std::optional<double> above = parse_decimal(std::string_view(text).substr(0, slash)), below = 1.0;
+    if (slash != std::string::npos) below = parse_decimal(std::string_view(text).substr(slash + 1));
+    if (!above || !below || *below == 0.0) {
+        throw BadOption{option + " must be a number or a fraction such as 1/60, not \"" + printable(text) + "\""};
+    }
+    return *above / *below;
+}
+
+template <class T>
+T choice(const std::string& option, Result<T> found) {
+    if (!found.ok()) throw BadOption{option + ": " + found.error().message};
+    return found.value();
+}
+
+// What is given as text and becomes a number or a choice once all options are there.
+struct RawOptions {
+    std::string seconds, dt, broad_phase, simplex, integrator;
+};
+
+void add_run_options(CLI::App& command, RunOptions& options, RawOptions& raw) {
+    command.add_option("SCENE", options.scene, "a built-in scene (see `lendulet scenes`), or a .gltf or .glb file")
+        ->required();
+    command.add_option("--seconds", raw.seconds, "how long to simulate, s (default 10)")->type_name("S");
+    command.add_option("--dt", raw.dt, "the step, s, such as 0.01 or 1/60 (default 1/60)")->type_name("D");
+    command.add_option("--threads", options.world.workers, "threads, 1 to 64 (default 1)")->type_name("N");
+    command.add_option("--solver-steps", options.world.solver_steps, "substeps of a step, 1 to 64 (default 8)")
+        ->type_name("N");
+    command.add_option("--broad-phase", raw.broad_phase, "all-pairs, sweep-1 or rtree-omt")->type_name("NAME");
+    command.add_option("--simplex", raw.simplex, "barycentric or half-space")->type_name("NAME");
+    command.add_option("--integrator", raw.integrator, "momentum, explicit-euler, symplectic-euler or runge-kutta-4")
+        ->type_name("NAME");
+    command.add_option("--width", options.world.width, "SIMD lanes: 1, 4, 8 or 16 (default: the most there are)")
+        ->type_name("W");
+    command.add_flag("--no-sleep", options.given.no_sleep, "keep resting bodies awake");
+    command.add_option("--json", options.json, "write the summary as JSON; - for standard output")->type_name("FILE|-");
+    command.add_option("--record", options.record, "write a recording of all poses")->type_name("FILE");
+    command.add_flag("--quiet", options.quiet, "print errors alone");
+}
+
+void finish_run_options(const CLI::App& command, const RawOptions& raw, RunOptions& options) {
+    if (!raw.seconds.empty()) options.seconds = parse_number("--seconds", raw.seconds);
+    if (!raw.dt.empty()) options.dt = parse_number("--dt", raw.dt);
+    if (!(options.seconds >= 0.0)) throw BadOption{"--seconds must not be negative"};
+    if (!(options.dt > 0.0 && options.dt <= 1.0)) throw BadOption{"--dt must be more than 0 and at most 1 s"};
+    if (options.seconds / options.dt > 1e9) throw BadOption{"--seconds / --dt is more than a thousand million steps"};
+    if (command.count("--broad-phase")) {
+        options.world.broad_phase = choice("--broad-phase", broad_phase_from_name(raw.broad_phase));
+    }
+    if (command.count("--simplex")) options.world.simplex = choice("--simplex", simplex_from_name(raw.simplex));
+    if (command.count("--integrator")) {
+        options.world.integrator = choice("--integrator", integrator_from_name(raw.integrator));
+    }
+    bool known_width = false;
+    for (int width : {1, 4, 8, 16}) known_width |= options.world.width == width;
+    if (command.count("--width") && !known_width) throw BadOption{"--width must be 1, 4, 8 or 16"};
+    options.given.threads = command.count("--threads") > 0;
+    options.given.solver_steps = command.count("--solver-steps") > 0;
+    options.given.broad_phase = command.count("--broad-phase") > 0;
+    options.given.simplex = command.count("--simplex") > 0;
+    options.given.integrator = command.count("--integrator") > 0;
+    options.given.width = command.count("--width") > 0;
+}
+
+}  // namespace
+
+int execute(int argc, char** argv) {
+    CLI::App app{"Lendulet: rigid bodies in three dimensions.", "lendulet"};
+    app.set_version_flag("--version", "lendulet " LENDULET_VERSION);
+    app.require_subcommand(1);
+    RunOptions options;
+    RawOptions raw;
+    std::string recording;
+    CLI::App* run_command = app.add_subcommand("run", "simulate a scene and print a summary");
+    add_run_options(*run_command, options, raw);
+    CLI::App* info_command = app.add_subcommand("info", "check and describe a recording");
+    info_command->add_option("FILE", recording, "a recording made by `lendulet run --record`")->required();
+    CLI::App* scenes_command = app.add_subcommand("scenes", "list the built-in scenes");
+    try {
+        app.parse(argc, argv);
+        if (run_command->parsed()) finish_run_options(*run_command, raw, options);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+        return fail(printable(error.what()));
+    } catch (const BadOption& bad) {
+        return fail(bad.sentence);
+    }
+    if (run_command->parsed()) return run(options);
+    if (info_command->parsed()) return info(recording);
+    if (scenes_command->parsed()) return list_scenes();
+    return fail("a command is required");
+}
+
+}  // namespace lendulet::cli

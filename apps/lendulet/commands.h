@@ -1,0 +1,35 @@
+// The commands of the program. Each returns the exit code: 0, or 2 after one sentence about bad input on stderr.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "lendulet/lendulet.h"
+
+namespace lendulet::cli {
+
+struct RunOptions {
+    std::string scene;  // a built-in scene's name, or a .gltf or .glb file
+    double seconds = 10.0;
+    double dt = 1.0 / 60.0;  // s
+    WorldConfig world;       // where an option was given; see `given`
+    struct Given {
+        bool threads = false, solver_steps = false, broad_phase = false, simplex = false, integrator = false,
+             width = false, no_sleep = false;
+    } given;
+    std::string json;    // file, "-" for standard output, empty for none
+    std::string record;  // file, empty for none
+    bool quiet = false;
+};
+
+int run(const RunOptions& options);
+int info(const std::string& file);
+int list_scenes();
+
+// Prints "lendulet: SENTENCE" on stderr, on one line, and returns 2.
+int fail(std::string_view sentence);
+
+// What the command line asks for, done. Returns the exit code.
+int execute(int argc, char** argv);
+
+}  // namespace lendulet::cli

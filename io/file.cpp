@@ -1,0 +1,46 @@
+#include "io/file.h"
+
+#include <filesystem>
+#include <fstream>
+
+namespace lendulet {
+
+std::string printable(std::string_view text) {
+    constexpr size_t longest = 200;
+    std::string out(text.substr(0, longest));
+    for (char& c : out) {
+        if (c < 0x20 || c > 0x7e) c = '?';
+    }
+    if (text.size() > longest) out += "...";
+    return out;
+}
+
+Result<std::string> read_file(const std::string& path, uint64_t limit) {
+    auto refuse = [&](const std::string& why) { return Error{ErrorCode::io, printable(path) + ": " + why}; };
+    // A name with a zero byte inside would be cut by the operating system and mean another file.
+    if (path.find('\0') != std::string::npos) return refuse("not a file name");
+    std::error_code error;
+    std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (error || !std::filesystem::exists(status)) return refuse("no such file");
+    // Devices and pipes could block or never end.
+    if (!std::filesystem::is_regular_file(status)) return refuse("not a regular file");
+    uint64_t size = std::filesystem::file_size(path, error);
+    if (error) return refuse("cannot be read");
+    if (size > limit) return refuse("larger than " + std::to_string(limit >> 20) + " MB");
+    std::ifstream in(path, std::ios::binary);
+    if (!in) return refuse("cannot be opened for reading");
+    std::string bytes(static_cast<size_t>(size), '\0');
+    in.read(bytes.data(), static_cast<std::streamsize>(size));
+    if (static_cast<uint64_t>(in.gcount()) != size) return refuse("cannot be read to its end");
+    return bytes;
+}
+
+Status write_file(const std::string& path, std::string_view content) {
+    std::ofstream out(path, std::ios::binary | std::ios::trunc);
+    out.write(content.data(), static_cast<std::streamsize>(content.size()));
+    out.close();
+    if (!out) return Error{ErrorCode::io, printable(path) + ": cannot be written"};
+    return {};
+}
+
+}  // namespace lendulet
