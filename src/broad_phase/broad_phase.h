@@ -23,8 +23,10 @@ public:
     BroadPhase(BroadPhaseType type, const Memory* memory);
 
     // Takes over the boxes of one set; they stay where they are and must stay valid until the next call for that set.
-    void set_fixed(const BroadBox* boxes, int count);
-    void set_moving(const BroadBox* boxes, int count);
+    // A box keeps its place in the array from call to call where it can: that is how a tree knows it again. `tasks`, if
+    // given, share the work; they never change the result.
+    void set_fixed(const BroadBox* boxes, int count, TaskPool* tasks = nullptr);
+    void set_moving(const BroadBox* boxes, int count, TaskPool* tasks = nullptr);
 
     // Appends every overlapping pair of the moving set with itself and with the fixed set, each once; the order depends
     // on the boxes alone, never on the number of workers.

@@ -1,0 +1,344 @@
+#include "broad_phase/box_tree.h"
+
+#include "math/wide/gather.h"
+
+namespace lendulet {
+
+namespace {
+
+// Below this a set is not cut at all: its few leaves are tested against each other faster than they could be improved.
+constexpr int smallest_cut = 32;
+// Work is cut into tasks of about this many boxes.
+constexpr int boxes_per_task = 2048;
+
+struct Bounds {
+    Float4 lower, upper;  // x, y, z and a lane of no meaning
+
+    void include(Float4 low, Float4 high) {
+        lower = minimum(low, lower);
+        upper = maximum(high, upper);
+    }
+    // Sum of the edge lengths.
+    float size() const { return (upper[0] - lower[0]) + (upper[1] - lower[1]) + (upper[2] - lower[2]); }
+    // A box with an infinite side shows in the bounds of its leaf, whichever side it is.
+    bool finite() const {
+        bool yes = true;
+        for (int d = 0; d < 3; ++d) yes &= lower[d] >= -FLT_MAX && upper[d] <= FLT_MAX;
+        return yes;
+    }
+};
+
+constexpr BroadBox empty_box{{infinity, infinity, infinity}, no_box, {-infinity, -infinity, -infinity}, 0};
+
+bool bounded(const BroadBox& box) {
+    bool yes = true;
+    for (int d = 0; d < 3; ++d) yes &= absolute(box.lower[d]) <= FLT_MAX && absolute(box.upper[d]) <= FLT_MAX;
+    return yes;
+}
+
+// Reads the boxes of a leaf from the caller's array, transposes them into the leaf and returns their bounds.
+Bounds fill_leaf(BoxBlock& leaf, uint32_t index[block_size], const BroadBox* boxes, const uint32_t slot[block_size]) {
+    Bounds bounds{splat<Float4>(infinity), splat<Float4>(-infinity)};
+    for (int half = 0; half < block_size; half += 4) {
+        Float4 low[4], high[4];
+        for (int i = 0; i < 4; ++i) {
+            const BroadBox* box = slot[half + i] == no_box ? &empty_box : boxes + slot[half + i];
+            low[i] = load_wide<Float4>(box->lower);
+            high[i] = load_wide<Float4>(box->upper);
+            bounds.include(low[i], high[i]);
+        }
+        detail::transpose4(low[0], low[1], low[2], low[3]);
+        detail::transpose4(high[0], high[1], high[2], high[3]);
+        for (int d = 0; d < 3; ++d) {
+            store_wide(leaf.lower[d] + half, low[d]);
+            store_wide(leaf.upper[d] + half, high[d]);
+        }
+        std::memcpy(index + half, &low[3], sizeof low[3]);  // the word behind `lower` is the index
+    }
+    return bounds;
+}
+
+// Bounds of the boxes of a block; empty lanes do not count.
+void block_bounds(const BoxBlock& block, float lower[3], float upper[3]) {
+    for (int d = 0; d < 3; ++d) {
+        lower[d] = infinity;
+        upper[d] = -infinity;
+        for (int i = 0; i < block_size; ++i) {
+            lower[d] = minimum(block.lower[d][i], lower[d]);
+            upper[d] = maximum(block.upper[d][i], upper[d]);
+        }
+    }
+}
+
+}  // namespace
+
+BoxTree::BoxTree(const Memory* memory)
+    : nodes_(memory),
+      index_(memory),
+      slot_(memory),
+      leaf_size_(memory),
+      group_growth_(memory),
+      unbounded_(memory),
+      unbounded_slot_(memory),
+      centres_(memory) {}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Building
+
+void BoxTree::build(const BroadBox* boxes, int count, TaskPool* tasks) {
+    count_ = count;
+    collect(boxes, count);
+    if (count_bounded() == 0) return;
+    plan_levels();
+    if (tasks && tasks->workers() > 1 && count_bounded() > 2 * boxes_per_task) arrange_in_parallel(*tasks);
+    else arrange(0, 0, 0, count_bounded());
+    fill(boxes, true, tasks);
+}
+
+// The centres of the bounded boxes, and the list of the others.
+void BoxTree::collect(const BroadBox* boxes, int count) {
+    unbounded_.clear();
+    unbounded_slot_.clear();
+    centres_.resize_unset(static_cast<size_t>(count));
+    size_t n = 0;
+    for (int i = 0; i < count; ++i) {
+        const BroadBox& box = boxes[i];
+        uint32_t slot = static_cast<uint32_t>(i);
+        if (!bounded(box)) {
+            unbounded_.push_back(box);
+            unbounded_slot_.push_back(slot);
+            continue;
+        }
+        // Halved before adding: the sum of two large floats may overflow.
+        BoxCentre& centre = centres_[n++];
+        for (int d = 0; d < 3; ++d) centre.at[d] = ordered(0.5f * box.lower[d] + 0.5f * box.upper[d]);
+        centre.slot = slot;
+    }
+    centres_.resize_unset(n);
+}
+
+// As many levels as needed; below the root the children of a node are as full as they can be, as Lee and Lee have it:
+// the root has count / 8^(height - 1) of them, rounded up.
+void BoxTree::plan_levels() {
+    int count = count_bounded();
+    int64_t capacity = block_size;  // of a child of the root
+    for (levels_ = 2; capacity * block_size < count; ++levels_) capacity *= block_size;
+    int size = count, nodes = 1, first = 0;  // size: of the largest node of the level
+    for (int level = 0; level < levels_; ++level) {
+        nodes_at_[level] = nodes;
+        first_node_[level] = first;
+        first += nodes;
+        if (level == levels_ - 1) break;
+        int fan_out = static_cast<int>((size + capacity - 1) / capacity);
+        fan_out_[level] = fan_out;
+        nodes *= fan_out;
+        size = (size + fan_out - 1) / fan_out;
+        capacity /= block_size;
+    }
+    size_t leaves = static_cast<size_t>(nodes_at_[levels_ - 1]);
+    nodes_.resize_unset(static_cast<size_t>(first));
+    index_.resize_unset(leaves * block_size);
+    slot_.resize_unset(leaves * block_size);
+    leaf_size_.resize_unset(leaves);
+    group_growth_.resize_unset(static_cast<size_t>(nodes_at_[levels_ - 2]));
+}
+
+// Divides the boxes [begin, begin + count) of a node among its children, and so on down to the leaves.
+void BoxTree::arrange(int level, int node, int begin, int count) {
+    if (level == levels_ - 1) {
+        for (int i = 0; i < block_size; ++i) {
+            slot_[static_cast<size_t>(node) * block_size + i] = i < count ? centres_[begin + i].slot : no_box;
+        }
+        return;
+    }
+    int fan_out = fan_out_[level];
+    if (count_bounded() > smallest_cut) omt_divide(centres_.data() + begin, count, fan_out);
+    for (int k = 0; k < fan_out; ++k) {
+        int from = part_begin(count, fan_out, k), to = part_begin(count, fan_out, k + 1);
+        arrange(level + 1, node * fan_out + k, begin + from, to - from);
+    }
+}
+
+BoxTree::Range BoxTree::range_of(int level, int node) const {
+    Range range{0, count_bounded()};
+    for (int l = 0; l < level; ++l) {
+        int below = 1;  // nodes of `level` per child of level l
+        for (int m = l + 1; m < level; ++m) below *= fan_out_[m];
+        int k = node / below % fan_out_[l];
+        int from = part_begin(range.count, fan_out_[l], k), to = part_begin(range.count, fan_out_[l], k + 1);
+        range = {range.begin + from, to - from};
+    }
+    return range;
+}
+
+// Level by level until there are enough nodes, then whole subtrees.
+void BoxTree::arrange_in_parallel(TaskPool& tasks) {
+    int level = 0;
+    for (; level < levels_ - 2 && nodes_at_[level] < 16; ++level) {
+        tasks.for_each(nodes_at_[level], 1, [&](int first, int last, int) {
+            for (int node = first; node < last; ++node) {
+                Range range = range_of(level, node);
+                omt_divide(centres_.data() + range.begin, range.count, fan_out_[level]);
+            }
+        });
+    }
+    tasks.for_each(nodes_at_[level], 1, [&](int first, int last, int) {
+        for (int node = first; node < last; ++node) {
+            Range range = range_of(level, node);
+            arrange(level, node, range.begin, range.count);
+        }
+    });
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Bounds
+
+bool BoxTree::refit(const BroadBox* boxes, TaskPool* tasks) {
+    for (int i = 0; i < unbounded_.count(); ++i) {
+        unbounded_[i] = boxes[unbounded_slot_[i]];
+        if (bounded(unbounded_[i])) return false;
+    }
+    return count_bounded() == 0 || fill(boxes, false, tasks);
+}
+
+bool BoxTree::fill(const BroadBox* boxes, bool building, TaskPool* tasks) {
+    auto fill_groups = [&](int first, int last, int) {
+        for (int i = first; i < last; ++i) group_growth_[i] = fill_group(boxes, i, building);
+    };
+    constexpr int grain = boxes_per_task / (block_size * block_size);
+    if (tasks) tasks->for_each(group_count(), grain, fill_groups);
+    else fill_groups(0, group_count(), 0);
+    fill_above_groups();
+    float sum = 0;  // in the order of the groups: the same for any number of workers
+    for (float growth : group_growth_) sum += growth;
+    growth_ = sum / static_cast<float>(nodes_at_[levels_ - 1]);
+    return growth_ < infinity;
+}
+
+// Sum of the growth of the leaves, infinite where a box has become so. The growth of a leaf is capped: a few boxes that
+// jumped across the world cost no more than their leaves meeting all others.
+float BoxTree::fill_group(const BroadBox* boxes, int group, bool building) {
+    constexpr float growth_cap = 1000;
+    int fan_out = leaves_per_group();
+    BoxBlock& block = nodes_[first_node_[group_level()] + group];
+    float sum = 0;
+    for (int k = 0; k < fan_out; ++k) {
+        int leaf = group * fan_out + k;
+        size_t place = static_cast<size_t>(leaf) * block_size;
+        Bounds bounds = fill_leaf(nodes_[first_node_[levels_ - 1] + leaf], &index_[place], boxes, &slot_[place]);
+        for (int d = 0; d < 3; ++d) {
+            block.lower[d][k] = bounds.lower[d];
+            block.upper[d][k] = bounds.upper[d];
+        }
+        float size = bounds.size();
+        if (building) leaf_size_[leaf] = size;
+        if (!bounds.finite()) sum = infinity;
+        else if (size > leaf_size_[leaf]) sum += minimum(size / leaf_size_[leaf], growth_cap);
+        else sum += 1;
+    }
+    for (int k = fan_out; k < block_size; ++k) clear_lane(block, k);
+    return sum;
+}
+
+void BoxTree::fill_above_groups() {
+    for (int level = group_level(); level > 0; --level) {
+        int fan_out = fan_out_[level - 1];
+        for (int i = 0; i < nodes_at_[level]; ++i) {
+            float lower[3], upper[3];
+            block_bounds(nodes_[first_node_[level] + i], lower, upper);
+            set_lane(nodes_[first_node_[level - 1] + i / fan_out], i % fan_out, lower, upper);
+        }
+        for (int i = 0; i < nodes_at_[level - 1]; ++i) {
+            for (int k = fan_out; k < block_size; ++k) clear_lane(nodes_[first_node_[level - 1] + i], k);
+        }
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Queries
+
+WideBox BoxTree::group_bounds(int i) const {
+    if (group_level() > 0) {
+        int fan_out = fan_out_[group_level() - 1];
+        return spread_lane(node({group_level() - 1, i / fan_out}), i % fan_out);
+    }
+    float lower[3], upper[3];
+    block_bounds(group(i), lower, upper);
+    return spread(lower, upper);
+}
+
+uint32_t BoxTree::boxes_in_leaf(int leaf) const {
+    uint32_t lanes = 0;
+    for (int i = 0; i < block_size; ++i) {
+        lanes |= (slot_[static_cast<size_t>(leaf) * block_size + i] != no_box ? 1u : 0u) << i;
+    }
+    return lanes;
+}
+
+void BoxTree::query_box(const float lower[3], const float upper[3], Array<uint32_t>& out) const {
+    for (const BroadBox& box : unbounded_) {
+        if (overlap(box, lower, upper)) out.push_back(box.index);
+    }
+    visit_overlapping(lower, upper, [&](uint32_t index) { out.push_back(index); });
+}
+
+void BoxTree::cast(RayCast& ray) const {
+    for (const BroadBox& box : unbounded_) ray.offer(ray_entry<float>(ray, box.lower, box.upper), box.index);
+    if (group_count() == 0) return;
+    struct Entry {
+        Place place;
+        float t;
+    };
+    Entry stack[stack_size];
+    stack[0] = {{0, 0}, 0};
+    for (int top = 1; top > 0;) {
+        auto [place, t] = stack[--top];
+        if (t > ray.best_t) continue;  // at equal t there may be a smaller index
+        if (place.level == levels_ - 1) {
+            cast_into(ray, node(place), boxes_in_leaf(place.node), leaf_indices(place.node));
+            continue;
+        }
+        float entry[block_size];
+        ray_entries(ray, node(place), entry);
+        for (int k = 0, bottom = top; k < fan_out_[place.level]; ++k) {
+            if (entry[k] > ray.best_t) continue;
+            int at = top++;  // sorted so that the nearest comes off first
+            for (; at > bottom && stack[at - 1].t < entry[k]; --at) stack[at] = stack[at - 1];
+            stack[at] = {child(place, k), entry[k]};
+        }
+    }
+}
+
+void BoxTree::boxes(Array<BroadPhaseBox>& out) const {
+    auto append = [&](const BoxBlock& block, int lane, int depth, bool leaf, uint32_t index) {
+        out.push_back({{block.lower[0][lane], block.lower[1][lane], block.lower[2][lane]},
+                       {block.upper[0][lane], block.upper[1][lane], block.upper[2][lane]},
+                       depth,
+                       leaf,
+                       index});
+    };
+    for (const BroadBox& b : unbounded_) {
+        out.push_back({{b.lower[0], b.lower[1], b.lower[2]}, {b.upper[0], b.upper[1], b.upper[2]}, 0, true, b.index});
+    }
+    if (group_count() == 0) return;
+    BroadPhaseBox root{{}, {}, 0, false, no_box};
+    block_bounds(node({0, 0}), root.lower, root.upper);
+    out.push_back(root);
+    for (int level = 0; level < levels_; ++level) {
+        bool leaf = level == levels_ - 1;
+        for (int i = 0; i < nodes_at_[level]; ++i) {
+            uint32_t lanes = leaf ? boxes_in_leaf(i) : (1u << fan_out_[level]) - 1;
+            while (lanes) {
+                int k = take_bit(lanes);
+                append(node({level, i}), k, level + 1, leaf, leaf ? leaf_indices(i)[k] : no_box);
+            }
+        }
+    }
+}
+
+size_t BoxTree::bytes() const {
+    return nodes_.bytes() + index_.bytes() + slot_.bytes() + leaf_size_.bytes() + group_growth_.bytes() +
+           unbounded_.bytes() + unbounded_slot_.bytes() + centres_.bytes();
+}
+
+}  // namespace lendulet

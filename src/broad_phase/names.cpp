@@ -1,0 +1,36 @@
+// The names of the broad phases on command lines and in files.
+#include <array>
+#include <string>
+#include <utility>
+
+#include "lendulet/options.h"
+
+namespace lendulet {
+
+namespace {
+
+constexpr std::array<std::pair<BroadPhaseType, std::string_view>, 3> names{{
+    {BroadPhaseType::all_pairs, "all-pairs"},
+    {BroadPhaseType::sweep_1, "sweep-1"},
+    {BroadPhaseType::rtree_omt, "rtree-omt"},
+}};
+
+}  // namespace
+
+std::string_view name_of(BroadPhaseType type) {
+    for (const auto& [value, name] : names) {
+        if (value == type) return name;
+    }
+    return "unknown";
+}
+
+Result<BroadPhaseType> broad_phase_from_name(std::string_view text) {
+    std::string known;
+    for (const auto& [value, name] : names) {
+        if (name == text) return value;
+        known += (known.empty() ? "" : ", ") + std::string(name);
+    }
+    return Error{ErrorCode::unknown_name, "there is no broad phase \"" + std::string(text) + "\"; there are " + known};
+}
+
+}  // namespace lendulet
