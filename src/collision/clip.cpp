@@ -45,8 +45,10 @@ float pick(FacePoint* points, int from, int count, Score&& score) {
 
 }  // namespace
 
-int reduce_points(FacePoint* points, int count) {
-    if (count <= 4) return count;
+int reduce_points(FacePoint* points, int count) { return count <= 4 ? count : thin_points(points, count); }
+
+int thin_points(FacePoint* points, int count) {
+    if (count <= 1) return count;
     float size = size_of(points, count);
     float reach = negligible_reach * size;
     float deepest = points[0].separation;
@@ -59,10 +61,12 @@ int reduce_points(FacePoint* points, int count) {
     float far = pick(points, 1, count,
                      [&](const FacePoint& p) { return (p.u - a.u) * (p.u - a.u) + (p.v - a.v) * (p.v - a.v); });
     if (!(far > reach * reach)) return 1;
+    if (count == 2) return 2;
     const FacePoint b = points[1];
     float least = reach * square_root(far);
     float third = pick(points, 2, count, [&](const FacePoint& p) { return absolute(area(a, b, p)); });
     if (!(third > least)) return 2;
+    if (count == 3) return 3;
     const FacePoint c = points[2];
     float side = area(a, b, c) > 0.0f ? 1.0f : -1.0f;
     float fourth = pick(points, 3, count, [&](const FacePoint& p) {

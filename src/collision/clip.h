@@ -15,10 +15,12 @@ struct FacePoint {
     uint32_t id;
 };
 
-// Where there are more than four, moves at most four points to the front and returns their number: the deepest (or,
-// within half a thousandth of the size of the set, the one farthest along a fixed direction, so that the choice is
-// steady where all are equally deep), the one farthest from it, the one that makes the largest triangle and the one
-// farthest outside that triangle. Points that add less than a thousandth of the size are left out.
+// Moves at most four points to the front and returns their number: the deepest (or, within half a thousandth of the
+// size of the set, the one farthest along a fixed direction, so that the choice is steady where all are equally deep),
+// the one farthest from it, the one that makes the largest triangle and the one farthest outside that triangle. Points
+// that add less than a thousandth of the size are left out.
+int thin_points(FacePoint* points, int count);
+// The same where there are more than four; up to four stay as they are.
 int reduce_points(FacePoint* points, int count);
 
 // Moves a face to another frame.

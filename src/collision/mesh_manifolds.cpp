@@ -29,7 +29,7 @@ void MeshManifolds::reduce(Group& group) {
         const MeshPoint& p = group.points[i];
         flat[i] = {dot(p.position(), u), dot(p.position(), v), p.separation, static_cast<uint32_t>(i)};
     }
-    int kept = reduce_points(flat, group.count);
+    int kept = thin_points(flat, group.count);
     MeshPoint chosen[4];
     for (int i = 0; i < kept; ++i) chosen[i] = group.points[flat[i].id];
     for (int i = 0; i < kept; ++i) group.points[i] = chosen[i];

@@ -38,7 +38,7 @@ public:
     int write(Manifold* out, int capacity);
 
 private:
-    static constexpr int max_groups = 2 * max_mesh_manifolds, max_points = 24;
+    static constexpr int max_groups = 24, max_points = 64;
     struct Group {
         Vec3 normal;
         bool face;
