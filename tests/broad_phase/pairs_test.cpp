@@ -36,7 +36,7 @@ TEST(PairsTest, EveryDistributionAndCount) {
 }
 
 TEST(PairsTest, ThousandsOfBoxes) {
-    for (const std::string& kind : {"uniform", "clustered", "line y", "ground", "sizes", "plane"}) {
+    for (const char* kind : {"uniform", "clustered", "line y", "ground", "sizes", "plane"}) {
         check(make_boxes(kind, 4200, 5), kind);
     }
 }
