@@ -1,6 +1,8 @@
 #include "collision/epa.h"
 
 #include "collision/epa_polytope.h"
+#include "collision/gjk_newton.h"
+#include "collision/gjk_search.h"
 #include "collision/simplex.h"
 
 namespace lendulet {
@@ -10,6 +12,9 @@ namespace {
 // when a support point rises less than this above the nearest face.
 constexpr double flat = 1e-11, merge = 1e-14;
 constexpr double surface = 1e-9, surface_curved = 1e-7;
+// A smooth minimum counts when its support point misses the line from the origin by less than this, and is taken for
+// the least of all when the polytope proves it to within the second.
+constexpr double tangent = 1e-8, surface_smooth = 4e-6;
 
 // Sets point i of the simplex to the support point among `directions` that measure() likes best.
 template <class Measure>
@@ -64,13 +69,6 @@ bool spans_well(const Simplex& s) {
     return volume * volume > 1e-8 * dot(e1, e1) * dot(e2, e2) * dot(e3, e3);
 }
 
-// Two unit vectors that complete the unit vector u to a right-handed frame (Frisvad 2012).
-void complete_frame(Vec3d u, Vec3d& p, Vec3d& q) {
-    double sign = u.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (sign + u.z), b = u.x * u.y * a;
-    p = {1.0 + sign * u.x * u.x * a, sign * b, -sign * u.x};
-    q = {b, sign + u.y * u.y * a, -u.y};
-}
-
 Penetration flat_result(const CoreDifference& difference, const Simplex& s, Vec3d normal, Vec3d hint) {
     Penetration result{0.0, normal, {}, {}, 0.0, 0};
     double side = dot(normal, hint);
@@ -115,6 +113,70 @@ bool make_tetrahedron(const CoreDifference& difference, Simplex& s, Vec3d hint, 
     return true;
 }
 
+// Where the surface is smooth, Newton's method finds its nearest point long before the polytope has proven that no
+// other is nearer. Tried whenever the bounds have come much closer since the last time.
+struct SmoothMinimum {
+    Tangency tangency;
+    bool found = false;
+    double try_below;
+
+    void look(const CoreDifference& difference, Vec3d direction, double lower, double gap) {
+        if (gap > try_below) return;
+        try_below = 0.1 * gap;
+        Tangency t = find_tangency(difference, direction);
+        bool valid = t.miss <= tangent * difference.size && t.height > lower - tangent * difference.size;
+        if (!valid || (found && t.height >= tangency.height)) return;
+        found = true;
+        tangency = t;
+    }
+};
+
+// Where curved minima lie too near to each other for the polytope to tell, one is made exact by descent: seen from
+// outside, a little beyond the surface along the normal, the nearest point of the difference has a normal that needs no
+// more depth. With o = (h(n) + clearance) n and n' the normal there, h(n') <= |o| - clearance = h(n).
+Penetration descend(const CoreDifference& difference, Vec3d n, int expansions) {
+    constexpr int max_rounds = 16;
+    constexpr uint8_t all_points[4] = {0, 1, 2, 3};
+    const double clearance = 0.01 * difference.size, settled = 1e-7 * difference.size;
+    Penetration result{};
+    DifferencePoint p = difference.support(n);
+    for (int round = 0; round < max_rounds; ++round) {
+        double height = dot(n, p.y);
+        Vec3d o = (height + clearance) * n;
+        CoreDifference seen = difference;
+        seen.translation -= o;
+        Simplex s;
+        s.add({p.y - o, p.a, p.b});
+        Search found = search(seen, s, SimplexSolver::barycentric, 1e300);
+        n = -found.direction;
+        p = difference.support(n);
+        result = {dot(n, p.y), n,         o + found.v, difference.witness_on_a(s, all_points, s.weight, s.count),
+                  0.0,         expansions};
+        if (result.depth > height - settled) break;
+    }
+    result.gap = absolute(length(result.y) - result.depth);
+    return result;
+}
+
+// The foot of the origin on the plane of face f. A face of the difference may be several coplanar triangles: the foot
+// lies in one of them.
+void foot_on_face(const CoreDifference& difference, const Polytope& polytope, int f, double tolerance,
+                  Penetration& result) {
+    const double distance = polytope.distance(f), sideways = 1e-7 * difference.size;
+    double least = 1e300;
+    for (int g = f, next = 0; g < polytope.face_end(); g = next++) {
+        bool coplanar = dot(polytope.normal(g), polytope.normal(f)) > 1.0 - 1e-10;
+        if (!coplanar || !(polytope.distance(g) <= distance + tolerance)) continue;
+        Simplex corners = polytope.triangle(g);
+        SubSimplex part = closest_barycentric(corners.y, 3);
+        if (!(length_squared(part.point) < least)) continue;
+        least = length_squared(part.point);
+        result.y = part.point;
+        result.point_a = difference.witness_on_a(corners, part.index, part.weight, part.count);
+        if (least - distance * distance <= sideways * sideways) return;
+    }
+}
+
 }  // namespace
 
 Penetration expand_polytope(const CoreDifference& difference, const Simplex& simplex, Vec3d hint) {
@@ -124,25 +186,31 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
 
     Polytope polytope;
     polytope.start(s, merge * difference.size);
-    const double tolerance = (difference.curved ? surface_curved : surface) * difference.size;
-    double upper = 1e300;
-    int f = 0, expansions = 0;
-    for (;;) {
-        f = polytope.nearest_face();
-        DifferencePoint p = difference.support(polytope.normal(f));
-        upper = dot(polytope.normal(f), p.y);
-        if (!(upper - polytope.distance(f) > tolerance) || expansions == max_expansions || polytope.holds(p.y)) break;
-        if (!polytope.expand(f, p)) break;
-        ++expansions;
+    const double size = difference.size, tolerance = (difference.curved ? surface_curved : surface) * size;
+    SmoothMinimum smooth{{}, false, difference.curved ? 0.1 * size : -1.0};
+    for (int expansions = 0;; ++expansions) {
+        int f = polytope.nearest_face();
+        Vec3d n = polytope.normal(f);
+        DifferencePoint p = difference.support(n);
+        double lower = polytope.distance(f), upper = dot(n, p.y), gap = upper - lower;
+        smooth.look(difference, n, lower, gap);
+        bool proven = smooth.found && smooth.tangency.height - lower <= surface_smooth * size;
+        bool last = proven || !(gap > tolerance) || expansions == max_expansions || polytope.holds(p.y) ||
+                    !polytope.expand(f, p);
+        if (last && smooth.found && smooth.tangency.height <= upper + tangent * size) {
+            const Tangency& t = smooth.tangency;
+            return {t.height, t.direction, t.p.y, snap_to_core(difference.a, to_double(t.p.a)), t.miss, expansions};
+        }
+        if (last && difference.curved && gap > surface_smooth * size) {
+            Penetration near = descend(difference, n, expansions);
+            if (near.depth <= upper + tangent * size) return near;
+        }
+        if (last) {
+            result = {maximum(upper, lower), n, {}, {}, gap, expansions};
+            foot_on_face(difference, polytope, f, tolerance, result);
+            return result;
+        }
     }
-
-    result = {maximum(upper, polytope.distance(f)), polytope.normal(f), {}, {},
-              upper - polytope.distance(f),         expansions};
-    Simplex face = polytope.triangle(f);
-    SubSimplex part = closest_barycentric(face.y, 3);
-    result.y = part.point;
-    result.point_a = difference.witness_on_a(face, part.index, part.weight, part.count);
-    return result;
 }
 
 }  // namespace lendulet

@@ -25,6 +25,7 @@ public:
     void retire(int f) { distance_[f] = far; }  // never again the nearest
 
     Vec3d normal(int f) const { return faces_[f].n; }
+    int face_end() const { return face_end_; }  // faces are 0 ... face_end() - 1, removed ones infinitely far
     double distance(int f) const { return distance_[f]; }  // from the origin to the plane, positive inside
     Simplex triangle(int f) const;
 

@@ -32,6 +32,11 @@ inline Vec3d support_point(const Geometry& g, Vec3d d) {
             double end = top >= bottom ? 1.0 : -1.0, s = r > 0.0 ? (top >= bottom ? g.size.z : g.size.x) / r : 0.0;
             return {s * d.x, end * g.size.y, s * d.z};
         }
+        case GeometryKind::triangle: {
+            Vec3d p = to_double(g.triangle[0]), q = to_double(g.triangle[1]), r = to_double(g.triangle[2]);
+            double at_p = dot(d, p), at_q = dot(d, q), at_r = dot(d, r);
+            return at_p >= at_q && at_p >= at_r ? p : at_q >= at_r ? q : r;
+        }
         default: {
             // Out of the range of float products (near contact v can be 1e-30 m long) only the direction is kept.
             double m = largest_component(d);

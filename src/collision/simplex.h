@@ -31,6 +31,15 @@ LENDULET_FORCE_INLINE SubSimplex closest_sub_simplex(SimplexSolver method, const
     return method == SimplexSolver::barycentric ? closest_barycentric(y, count) : closest_half_space(y, count);
 }
 
+// Whether four points span so little volume, against the rounding of products of their coordinates, that the sides on
+// which the origin lies of their faces are not known. e1, e2, e3 are the edges from y[0].
+LENDULET_FORCE_INLINE bool is_flat(const Vec3d* y, Vec3d e1, Vec3d e2, Vec3d e3, double volume) {
+    constexpr double rounding = 1e-14;
+    double edge = maximum(dot(e1, e1), maximum(dot(e2, e2), dot(e3, e3)));
+    double reach = maximum(maximum(dot(y[0], y[0]), dot(y[1], y[1])), maximum(dot(y[2], y[2]), dot(y[3], y[3])));
+    return !(volume * volume > rounding * rounding * edge * edge * reach);
+}
+
 // -- Pieces that both share -------------------------------------------------------------------------------------------
 
 LENDULET_FORCE_INLINE SubSimplex vertex_part(const Vec3d* y, int i) {

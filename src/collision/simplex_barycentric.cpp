@@ -6,10 +6,9 @@
 namespace lendulet {
 namespace {
 
-// Squared sine of the angle below which three points count as collinear, and relative volume below which four count as
-// coplanar: there the signs of areas and volumes are rounding, and all parts are compared by distance.
+// Squared sine of the angle below which three points count as collinear: there the signs of areas are rounding, and all
+// parts are compared by distance.
 constexpr double collinear = 1e-18;
-constexpr double coplanar = 1e-13;
 
 void keep_nearer(SubSimplex& best, const SubSimplex& candidate) {
     if (length_squared(candidate.point) < length_squared(best.point)) best = candidate;
@@ -49,7 +48,7 @@ SubSimplex closest_on_tetrahedron(const Vec3d* y) {
     u[3] = -dot(n3, y[0]);
     u[0] = dot(cross(y[2] - y[1], y[3] - y[1]), y[1]);
     double sign = volume < 0.0 ? -1.0 : 1.0;
-    bool flat = !(volume * volume > coplanar * coplanar * dot(e1, e1) * dot(e2, e2) * dot(e3, e3));
+    bool flat = is_flat(y, e1, e2, e3, volume);
     bool inside = !flat;
     for (double& ui : u) {
         ui *= sign;

@@ -11,10 +11,8 @@
 namespace lendulet {
 namespace {
 
-// Squared sine of the angle below which a face counts as an edge, and relative volume below which a tetrahedron counts
-// as flat: the signs of tests on such parts are rounding.
+// Squared sine of the angle below which a face counts as an edge: the signs of its tests are rounding.
 constexpr double collinear = 1e-18;
-constexpr double coplanar = 1e-13;
 // A walk visits each of the 15 parts once at most where signs are exact; more steps mean that rounding misleads it.
 constexpr int max_steps = 16;
 
@@ -86,15 +84,10 @@ bool beyond_face(const Vec3d* y, int m) {
     return corner > 0.0 ? origin <= 0.0 : origin >= 0.0;
 }
 
-bool is_flat(const Vec3d* y) {
-    Vec3d e1 = y[1] - y[0], e2 = y[2] - y[0], e3 = y[3] - y[0];
-    double volume = dot(cross(e1, e2), e3);
-    return !(volume * volume > coplanar * coplanar * dot(e1, e1) * dot(e2, e2) * dot(e3, e3));
-}
-
 // Behind a face the origin lies inside the tetrahedron or beyond another face.
 Step walk_through_face(const Vec3d* y, Part& part, int opposite) {
-    if (is_flat(y)) return Step::lost;
+    Vec3d e1 = y[1] - y[0], e2 = y[2] - y[0], e3 = y[3] - y[0];
+    if (is_flat(y, e1, e2, e3, dot(cross(e1, e2), e3))) return Step::lost;
     for (int m = 3; m >= 0; --m)
         if (m != opposite && beyond_face(y, m)) {
             part = {3, {m == 0 ? 1 : 0, m <= 1 ? 2 : 1, m <= 2 ? 3 : 2}};
