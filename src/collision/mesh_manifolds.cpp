@@ -14,6 +14,9 @@ uint32_t name_of_normal(Vec3 n) {
     return (step(n.x) & 0x3ffu) | (step(n.y) & 0x3ffu) << 10 | (step(n.z) & 0x3ffu) << 20;
 }
 
+// Whether a point is a corner of the shape over any face.
+bool names_corner(uint32_t id) { return id >> 16 == face_feature(0); }
+
 float deepest_of(const TriangleContact& contact) {
     float deepest = contact.points[0].separation;
     for (int i = 1; i < contact.count; ++i) deepest = minimum(deepest, contact.points[i].separation);
@@ -64,7 +67,9 @@ void MeshManifolds::add_point(Group& group, const MeshPoint& point) {
     for (int i = 0; i < group.count; ++i) {
         MeshPoint& p = group.points[i];
         if (p.id != point.id && length_squared(p.position() - point.position()) > near_squared_) continue;
-        if (point.separation < p.separation) p = point;
+        // Where a corner of the shape meets an edge of the mesh, the corner's name is the one that lasts.
+        bool corner = names_corner(point.id), was_corner = names_corner(p.id);
+        if (corner != was_corner ? corner : point.separation < p.separation) p = point;
         return;
     }
     if (group.count == max_points) reduce(group);

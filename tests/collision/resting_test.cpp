@@ -1,28 +1,13 @@
 // Every shape in every pose in which it can rest: on a box, a hull, a plane and a grid of triangles it gets the points
 // it needs, level, at the right height, and evenly about its centre.
 #include "family.h"
+#include "meshes.h"
 
 using namespace pairs;
 
 namespace {
 
 const Vec3 up{0.0f, 1.0f, 0.0f};
-
-TriangleMesh flat_grid(int cells, float step) {
-    std::vector<Vec3> vertices;
-    std::vector<uint32_t> indices;
-    float start = -0.5f * step * static_cast<float>(cells);
-    for (int z = 0; z <= cells; ++z)
-        for (int x = 0; x <= cells; ++x)
-            vertices.push_back({start + step * static_cast<float>(x), 0.0f, start + step * static_cast<float>(z)});
-    auto row = static_cast<uint32_t>(cells + 1);
-    for (uint32_t z = 0; z + 1 < row; ++z)
-        for (uint32_t x = 0; x + 1 < row; ++x) {
-            uint32_t a = z * row + x, b = a + 1, c = a + row, d = c + 1;
-            for (uint32_t i : {a, c, b, b, c, d}) indices.push_back(i);
-        }
-    return TriangleMesh::from_triangles(vertices, indices).value();
-}
 
 struct Floor {
     const char* name;

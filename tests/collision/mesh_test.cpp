@@ -1,0 +1,257 @@
+// Convex shapes on triangle meshes: flat triangulations are like a plane, edges are felt where they stick out and
+// nowhere else, both sides are solid, names last.
+#include "meshes.h"
+
+#include "family.h"
+#include "geometry/mesh.h"
+
+using namespace pairs;
+
+namespace {
+
+const Vec3 up{0.0f, 1.0f, 0.0f};
+
+std::vector<Manifold> on(const Solid& mesh, const Solid& shape, Vec3 at, Quat turn = {}, float margin = 0.02f) {
+    return manifolds(pair_of({mesh, {}}, {shape, turn}, at, margin));
+}
+
+// Whether the points hold up what presses at `centre`: it lies in their convex hull, seen from above.
+bool supports(const Manifold& m, Vec3 centre) {
+    for (int k = 0; k < 64; ++k) {  // some point lies on the far side of the centre in every direction
+        SinCos d = sin_cos(2.0f * pi * static_cast<float>(k) / 64.0f);
+        bool held = false;
+        for (int i = 0; i < m.count; ++i) {
+            Vec3 p = m.points[i].position - centre;
+            held |= d.cos * p.x + d.sin * p.z > 0.0f;
+        }
+        if (!held) return false;
+    }
+    return true;
+}
+
+TEST(Mesh, FlatGridGivesThePlanesNormalEverywhere) {
+    Solid mesh(flat_grid(16, 0.5f)), ball(Sphere{0.4f}), box(Box{{0.3f, 0.4f, 0.5f}});
+    Random random(5);
+    uint32_t key = 0;
+    for (int i = 0; i < 1500; ++i) {
+        // Along a skew line that meets many edges and corners, pressed in by up to 5 mm; then through corners exactly.
+        float s = 0.004f * static_cast<float>(i) - 3.0f;
+        Vec3 at = i % 3 == 0 ? Vec3{0.5f * static_cast<float>(i % 11 - 5), 0.4f, 0.5f * static_cast<float>(i % 7 - 3)}
+                             : Vec3{s, 0.4f - random.in(0.0f, 5e-3f), 0.37f * s};
+        std::vector<Manifold> m = on(mesh, ball, at);
+        ASSERT_EQ(m.size(), 1u) << i;
+        EXPECT_EQ(m[0].normal, up);
+        ASSERT_EQ(m[0].count, 1);
+        EXPECT_NEAR(m[0].points[0].separation, at.y - 0.4f, 1e-6f);
+        expect_near(m[0].points[0].position, {at.x, 0.5f * (at.y - 0.4f), at.z}, 1e-5f);
+        m = on(mesh, box, at, rotation_about(up, s));
+        ASSERT_EQ(m.size(), 1u) << i;
+        EXPECT_EQ(m[0].normal, up);
+        ASSERT_EQ(m[0].count, 4);
+        EXPECT_NEAR(deepest(m[0]), at.y - 0.4f, 1e-6f);
+        EXPECT_TRUE(supports(m[0], at));
+        if (i == 0) key = m[0].key;
+        EXPECT_EQ(m[0].key, key);
+    }
+}
+
+TEST(Mesh, TiltedShapesOnAFlatGridTouchLikeOnAPlane) {
+    Solid mesh(flat_grid(16, 0.5f)), plane(Plane{up, 0.0f});
+    Random random(8);
+    for (const Kind& kind : every_kind()) {
+        Solid shape(kind.shape);
+        for (int i = 0; i < 100; ++i) {
+            Quat turn = random.rotation();
+            CentredBox box = bounds(shape.geometry, turn);
+            Vec3 at{random.in(-1.0f, 1.0f), box.half.y - box.centre.y - random.in(-0.01f, 0.05f),
+                    random.in(-1.0f, 1.0f)};
+            std::vector<Manifold> m = on(mesh, shape, at, turn);
+            Manifold expected = manifold(pair_of({plane, {}}, {shape, turn}, at, 0.02f));
+            ASSERT_EQ(m.size(), 1u) << kind.name;
+            EXPECT_EQ(m[0].normal, up) << kind.name;
+            EXPECT_NEAR(deepest(m[0]), deepest(expected), 1e-3f) << kind.name;
+        }
+    }
+}
+
+TEST(Mesh, CornerNamesLastWhileABoxSlides) {
+    Solid mesh(flat_grid(16, 0.5f)), box(Box{{0.3f, 0.4f, 0.5f}});
+    uint32_t names[4] = {};
+    for (int i = 0; i < 300; ++i) {
+        float s = 0.003f * static_cast<float>(i);
+        std::vector<Manifold> m = on(mesh, box, {s, 0.399f, -0.7f * s}, rotation_about(up, 0.2f));
+        ASSERT_EQ(m.size(), 1u);
+        ASSERT_EQ(m[0].count, 4);
+        for (int k = 0; k < 4; ++k) {
+            if (i == 0) names[k] = m[0].points[k].id;
+            bool known = false;
+            for (uint32_t name : names) known |= name == m[0].points[k].id;
+            EXPECT_TRUE(known) << i;
+        }
+    }
+}
+
+TEST(Mesh, BothSidesAreSolid) {
+    Solid mesh(flat_grid(4, 1.0f)), ball(Sphere{0.4f}), box(Box{{0.3f, 0.4f, 0.5f}});
+    for (const Solid* shape : {&ball, &box}) {
+        // Even deep in, the side of the centre decides.
+        for (float y : {0.39f, 0.2f, 0.01f, -0.01f, -0.2f, -0.39f}) {
+            std::vector<Manifold> m = on(mesh, *shape, {0.3f, y, 0.2f});
+            ASSERT_EQ(m.size(), 1u) << y;
+            EXPECT_EQ(m[0].normal, (y > 0.0f ? up : -up)) << y;
+            EXPECT_NEAR(deepest(m[0]), absolute(y) - 0.4f, 1e-5f);
+        }
+    }
+}
+
+TEST(Mesh, RidgeTouchesAlongItsEdge) {
+    // A roof with its ridge along z; edges at the foot do not matter here.
+    Solid roof(grid(4, 1.0f, [](float x, float) { return 1.0f - absolute(x); }));
+    Solid ball(Sphere{0.5f}), box(Box{{0.5f, 0.5f, 0.5f}}), cylinder(Cylinder{0.5f, 0.5f});
+    for (float z : {0.25f, 0.0f, -0.7f}) {
+        std::vector<Manifold> m = on(roof, ball, {0.0f, 1.49f, z});
+        ASSERT_EQ(m.size(), 1u);
+        expect_near(m[0].normal, up, 1e-5f);
+        EXPECT_NEAR(deepest(m[0]), -0.01f, 1e-5f);
+        m = on(roof, box, {0.1f, 1.49f, z});
+        ASSERT_EQ(m.size(), 1u);
+        expect_near(m[0].normal, up, 1e-5f);
+        ASSERT_EQ(m[0].count, 2);
+        for (int k = 0; k < 2; ++k) {
+            EXPECT_NEAR(m[0].points[k].position.x, 0.0f, 1e-4f);
+            EXPECT_NEAR(absolute(m[0].points[k].position.z - z), 0.5f, 1e-3f);
+            EXPECT_NEAR(m[0].points[k].separation, -0.01f, 1e-4f);
+        }
+    }
+    // On a slope there is the slope's normal.
+    float h = std::sqrt(0.5f);
+    std::vector<Manifold> m = on(roof, ball, {0.5f + 0.49f * h, 0.5f + 0.49f * h, 0.1f});
+    ASSERT_EQ(m.size(), 1u);
+    expect_near(m[0].normal, {h, h, 0.0f}, 1e-5f);
+    EXPECT_NEAR(deepest(m[0]), -0.01f, 1e-5f);
+}
+
+TEST(Mesh, ValleyTouchesBothSides) {
+    Solid valley(grid(4, 1.0f, [](float x, float) { return absolute(x); })), ball(Sphere{0.5f});
+    float h = std::sqrt(0.5f);
+    std::vector<Manifold> m = on(valley, ball, {0.0f, 0.5f / h - 0.01f, 0.1f});
+    ASSERT_EQ(m.size(), 2u);
+    for (const Manifold& side : m) {
+        EXPECT_NEAR(absolute(side.normal.x), h, 1e-5f);
+        EXPECT_NEAR(side.normal.y, h, 1e-5f);
+        EXPECT_NEAR(deepest(side), -0.01f * h, 1e-5f);
+    }
+    EXPECT_NE(m[0].key, m[1].key);
+}
+
+TEST(Mesh, ClosedBoxPushesOutOfItsTop) {
+    // A box over the rim of a block made of triangles, sunk in by 1 cm and hanging over the side by 0.3 m and by 2 cm:
+    // its centre is behind the side's triangles, which must not pull it in.
+    Solid block(box_mesh({1.0f, 1.0f, 1.0f})), box(Box{{0.5f, 0.5f, 0.5f}});
+    for (float x : {0.8f, 0.52f, 0.0f}) {
+        std::vector<Manifold> m = on(block, box, {x, 1.49f, 0.1f});
+        ASSERT_EQ(m.size(), 1u) << x;
+        expect_near(m[0].normal, up, 1e-5f);
+        EXPECT_EQ(m[0].count, 4);
+        EXPECT_NEAR(deepest(m[0]), -0.01f, 1e-5f);
+    }
+}
+
+TEST(Mesh, BorderTouchesFromTheSide) {
+    Solid sheet(flat_grid(2, 1.0f)), ball(Sphere{0.5f}), box(Box{{0.5f, 0.5f, 0.5f}});
+    std::vector<Manifold> m = on(sheet, ball, {1.49f, 0.0f, 0.3f});
+    ASSERT_EQ(m.size(), 1u);
+    expect_near(m[0].normal, {1.0f, 0.0f, 0.0f}, 1e-5f);
+    EXPECT_NEAR(deepest(m[0]), -0.01f, 1e-5f);
+    m = on(sheet, box, {1.505f, 0.1f, 0.3f});
+    ASSERT_EQ(m.size(), 1u);
+    expect_near(m[0].normal, {1.0f, 0.0f, 0.0f}, 1e-4f);
+    EXPECT_NEAR(deepest(m[0]), 0.005f, 1e-5f);
+}
+
+TEST(Mesh, SeparatedDistanceAgreesWithBruteForce) {
+    // On bumpy ground every edge counts: the least separation of all manifolds is the distance to the nearest triangle.
+    auto height = [](float x, float z) { return 0.3f * sin_cos(2.1f * x).sin * sin_cos(1.7f * z + 0.5f).cos; };
+    TriangleMesh ground = grid(12, 0.4f, height);
+    Solid mesh(ground);
+    Random random(12);
+    int compared = 0;
+    for (const Kind& kind : every_kind()) {
+        Solid shape(kind.shape);
+        for (int i = 0; i < 60; ++i) {
+            Quat turn = random.rotation();
+            Vec3 at{random.in(-1.5f, 1.5f), random.in(0.5f, 1.0f), random.in(-1.5f, 1.5f)};
+            float nearest = 1e9f;
+            for (const MeshTriangle& t : ground.data().triangles) {
+                Vec3 corners[3];
+                for (int k = 0; k < 3; ++k) corners[k] = ground.data().vertices[t.vertex[k]] - at;
+                Geometry g;
+                g.kind = GeometryKind::triangle;
+                g.triangle = corners;
+                GjkCache cache;
+                ConvexDistance d = distance({&g, &shape.geometry, {{}, turn}}, cache, SimplexSolver::barycentric, 1e9f);
+                nearest = minimum(nearest, d.distance - shape.geometry.rounding);
+            }
+            const float margin = 0.1f;
+            PairCache cache;
+            CollidePair pair = pair_of({mesh, {}}, {shape, turn}, at, margin);
+            if (absolute(nearest) > 1e-4f) {
+                EXPECT_EQ(overlap(pair, cache, {}), nearest < 0.0f);
+            }
+            if (nearest < 1e-3f || absolute(nearest - margin) < 1e-3f) continue;
+            ++compared;
+            std::vector<Manifold> m = manifolds(pair);
+            ASSERT_EQ(!m.empty(), nearest < margin) << kind.name << " " << nearest;
+            float least = 1e9f;
+            for (const Manifold& one : m) least = minimum(least, deepest(one));
+            if (!m.empty()) {
+                EXPECT_NEAR(least, nearest, 0.02f) << kind.name << " " << i;
+            }
+        }
+    }
+    EXPECT_GT(compared, 200);
+}
+
+TEST(Mesh, AtMostTheDeepestManifoldsAreKept) {
+    // Many facets within a ball's margin.
+    Solid mesh(grid(20, 0.1f, [](float x, float z) { return 3.0f * (x * x + z * z); })), ball(Sphere{0.9f});
+    CollidePair pair = pair_of({mesh, {}}, {ball, {}}, {0.01f, 0.85f, 0.02f}, 0.5f);
+    PairCache cache;
+    Manifold out[max_mesh_manifolds];
+    int all = collide(pair, cache, {}, out, max_mesh_manifolds);
+    ASSERT_EQ(all, max_mesh_manifolds);
+    float least = 1e9f;
+    for (const Manifold& m : out) {
+        ASSERT_NO_FATAL_FAILURE(expect_sound(m, 0.5f));
+        least = minimum(least, deepest(m));
+    }
+    for (int i = 1; i < all; ++i) EXPECT_LE(deepest(out[i - 1]), deepest(out[i]));
+    Manifold few[3];
+    ASSERT_EQ(collide(pair, cache, {}, few, 3), 3);
+    EXPECT_EQ(deepest(few[0]), least);
+    for (int i = 0; i < 16; ++i) {
+        for (int k = 0; k < i; ++k) EXPECT_NE(out[i].key, out[k].key);
+    }
+}
+
+TEST(Mesh, DeepAndDegenerateInputStaysFinite) {
+    Solid ground(grid(6, 0.5f, [](float x, float z) { return 0.1f * x * z; })),
+        sliver(grid(6, 1e-3f, [](float x, float) { return x; }));
+    std::vector<Kind> kinds = every_kind();
+    kinds.push_back({"slab", Box{{1.0f, 1e-4f, 1.0f}}});
+    kinds.push_back({"huge", Box{{1e3f, 1e3f, 1e3f}}});
+    Random random(77);
+    for (const Kind& kind : kinds) {
+        Solid shape(kind.shape);
+        for (const Solid* mesh : {&ground, &sliver}) {
+            for (int i = 0; i < 20; ++i) {
+                Quat turn = i % 2 == 0 ? Quat{} : random.rotation();
+                Vec3 at = i < 4 ? Vec3{} : 0.2f * random.direction();
+                for (const Manifold& m : on(*mesh, shape, at, turn))
+                    ASSERT_NO_FATAL_FAILURE(expect_sound(m, 0.02f)) << kind.name;
+            }
+        }
+    }
+}
+
+}  // namespace
