@@ -41,6 +41,8 @@ TEST(PairsTest, ThousandsOfBoxes) {
     }
 }
 
+TEST(PairsTest, TenThousandBoxesOnOneHugeGround) { check(make_boxes("ground", 10001, 8), "ground"); }
+
 TEST(PairsTest, TwentyThousandBoxes) {
     TaskPool tasks(1);
     Memory memory;
