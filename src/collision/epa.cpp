@@ -133,29 +133,33 @@ struct SmoothMinimum {
 
 // Where curved minima lie too near to each other for the polytope to tell, one is made exact by descent: seen from
 // outside, a little beyond the surface along the normal, the nearest point of the difference has a normal that needs no
-// more depth. With o = (h(n) + clearance) n and n' the normal there, h(n') <= |o| - clearance = h(n).
+// more depth. With o = (h(n) + clearance) n and n' the normal there, h(n') <= |o| - clearance = h(n). Nearly round
+// differences make these steps short, so each round starts as much farther on as the last one came, while that pays.
 Penetration descend(const CoreDifference& difference, Vec3d n, int expansions) {
-    constexpr int max_rounds = 16;
+    constexpr int max_rounds = 64;
     constexpr uint8_t all_points[4] = {0, 1, 2, 3};
-    const double clearance = 0.01 * difference.size, settled = 1e-7 * difference.size;
-    Penetration result{};
-    DifferencePoint p = difference.support(n);
+    const double clearance = 0.01 * difference.size, settled = 1e-8 * difference.size;
+    Penetration best{dot(n, difference.support(n).y), n, {}, {}, 1e300, expansions};
+    Vec3d ahead{};
     for (int round = 0; round < max_rounds; ++round) {
-        double height = dot(n, p.y);
-        Vec3d o = (height + clearance) * n;
+        Vec3d from = best.outward + ahead;
+        from = (1.0 / length(from)) * from;
+        DifferencePoint p = difference.support(from);
+        Vec3d o = (dot(from, p.y) + clearance) * from;
         CoreDifference seen = difference;
         seen.translation -= o;
         Simplex s;
         s.add({p.y - o, p.a, p.b});
         Search found = search(seen, s, SimplexSolver::barycentric, 1e300);
-        n = -found.direction;
-        p = difference.support(n);
-        result = {dot(n, p.y), n,         o + found.v, difference.witness_on_a(s, all_points, s.weight, s.count),
-                  0.0,         expansions};
-        if (result.depth > height - settled) break;
+        Vec3d next = -found.direction, y = o + found.v;
+        double depth = dot(next, difference.support(next).y), gap = absolute(length(y) - depth);
+        bool better = depth < best.depth - settled, plain = length_squared(ahead) == 0.0;
+        ahead = better ? next - best.outward : Vec3d{};
+        if (better || (depth <= best.depth + settled && gap < best.gap))
+            best = {depth, next, y, difference.witness_on_a(s, all_points, s.weight, s.count), gap, expansions};
+        if (!better && plain) break;
     }
-    result.gap = absolute(length(result.y) - result.depth);
-    return result;
+    return best;
 }
 
 // The foot of the origin on the plane of face f. A face of the difference may be several coplanar triangles: the foot
@@ -197,19 +201,16 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
         bool proven = smooth.found && smooth.tangency.height - lower <= surface_smooth * size;
         bool last = proven || !(gap > tolerance) || expansions == max_expansions || polytope.holds(p.y) ||
                     !polytope.expand(f, p);
-        if (last && smooth.found && smooth.tangency.height <= upper + tangent * size) {
-            const Tangency& t = smooth.tangency;
-            return {t.height, t.direction, t.p.y, snap_to_core(difference.a, to_double(t.p.a)), t.miss, expansions};
-        }
-        if (last && difference.curved && gap > surface_smooth * size) {
-            Penetration near = descend(difference, n, expansions);
-            if (near.depth <= upper + tangent * size) return near;
-        }
-        if (last) {
+        if (!last) continue;
+        if (difference.curved && !proven && gap > tolerance) result = descend(difference, n, expansions);
+        else {
             result = {maximum(upper, lower), n, {}, {}, gap, expansions};
             foot_on_face(difference, polytope, f, tolerance, result);
-            return result;
         }
+        const Tangency& t = smooth.tangency;
+        if (smooth.found && t.height <= result.depth + tangent * size)
+            result = {t.height, t.direction, t.p.y, snap_to_core(difference.a, to_double(t.p.a)), t.miss, expansions};
+        return result;
     }
 }
 

@@ -40,7 +40,7 @@ inline Tangency find_tangency(const CoreDifference& difference, Vec3d direction)
         Vec3d y2 = (1.0 / step) * (difference.support(d + step * t2).y - now.p.y);
         double j11 = dot(t1, y1) - now.height, j22 = dot(t2, y2) - now.height, j12 = dot(t1, y2), j21 = dot(t2, y1);
         double determinant = j11 * j22 - j12 * j21;
-        if (!(determinant > 0.0)) return now;
+        if (!(determinant > 0.0) || !(j11 > 0.0)) return now;  // not towards a minimum
         double a1 = (f2 * j12 - f1 * j22) / determinant, a2 = (f1 * j21 - f2 * j11) / determinant;
         double length_a = square_root(a1 * a1 + a2 * a2), limit = length_a > 0.5 ? 0.5 / length_a : 1.0;
         Vec3d next = d + (limit * a1) * t1 + (limit * a2) * t2;

@@ -199,8 +199,9 @@ void Tally::certify(const Core& a, const Core& b, const Transform& t, const Conv
     oracle::Pose pose = oracle_pose(t);
     Vec pa = wide(r.point_a), pb = wide(r.point_b);
     Real off = std::max(outside(a, pa), outside(b, turned_back(pose, pb - pose.translation)));
-    // Where all directions are nearly as good (concentric round cores), the witness points may lie off the normal.
-    bool round = a.curved && b.curved && r.distance < 0;
+    // Where all directions are nearly as good (round cores with a common axis), the witness points may lie off the
+    // normal.
+    bool round = (a.curved || b.curved) && r.distance < 0;
     off = std::max(off, round ? std::abs(norm(pb - pa) + r.distance) : norm(pb - pa - Real(r.distance) * n));
     witness = std::max(witness, static_cast<double>(off / s));
     if (off > 4e-6L * s) fail("witness points off by " + std::to_string(double(off / s * 1e6L)) + "e-6 S", a, b, t, r);
