@@ -132,8 +132,10 @@ void clip_face(const Face& reference, const Face& incident, bool reference_is_b,
     project(incident, out, a);
     Extent under = extent_of(a, incident.count);
     out.size = incident.count > 1 ? minimum(over.size(), under.size()) : over.size();
-    if (under.u0 > over.u1 + out.size || under.u1 < over.u0 - out.size) return;
-    int side_count = sides_of(b, reference.count, overhang * out.size, sides);
+    float slack = overhang * out.size, reach = 2.0f * slack;  // more than the sides' slack reaches at a square corner
+    if (under.u0 > over.u1 + reach || under.u1 < over.u0 - reach) return;
+    if (under.v0 > over.v1 + reach || under.v1 < over.v0 - reach) return;
+    int side_count = sides_of(b, reference.count, slack, sides);
     for (int i = 0; i < incident.count; ++i) {
         a[i].incident = vertex_feature(incident.ids[i]);
         a[i].reference = face_feature(reference.id);

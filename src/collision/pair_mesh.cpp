@@ -86,7 +86,7 @@ void add_point(Vec3 position, float separation, uint32_t id, TriangleContact& ou
 bool leans_across(const Triangle& t, uint8_t edges, Vec3 normal) {
     for (int i = 0; i < 3; ++i) {
         bool closed = (edges & ~t.touching) >> i & 1;
-        if (closed && dot(normal, t.out[i]) > lean_tolerance) return true;
+        if (closed && dot(normal, normalize(out_across(t, i))) > lean_tolerance) return true;
     }
     return false;
 }
@@ -125,7 +125,7 @@ void look_at(MeshQuery& q, Vec3 normal) {
 
 bool over(const Triangle& t, Vec3 p) {
     for (int i = 0; i < 3; ++i) {
-        if (dot(p - t.vertices[i], t.out[i]) > 0.0f) return false;
+        if (dot(p - t.vertices[i], out_across(t, i)) > 0.0f) return false;
     }
     return true;
 }
@@ -188,7 +188,7 @@ bool is_shortest(const MeshQuery& q, const Triangle& t, const ClippedFace& clipp
 uint8_t edges_at(const MeshQuery& q, const Triangle& t, Vec3 point) {
     uint8_t edges = 0;
     for (int i = 0; i < 3; ++i) {
-        bool on = dot(point - t.vertices[i], t.out[i]) > -10.0f * level * q.size;
+        bool on = dot(point - t.vertices[i], normalize(out_across(t, i))) > -10.0f * level * q.size;
         edges = static_cast<uint8_t>(edges | on << i);
     }
     return edges;

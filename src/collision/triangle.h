@@ -28,12 +28,17 @@ inline Triangle make_triangle(const MeshData& mesh, uint32_t index, Vec3 positio
     Vec3 front = mesh.normals[index];
     r.from_behind = dot(front, centre - r.vertices[0]) < 0.0f;
     r.normal = r.from_behind ? -front : front;
-    for (int i = 0; i < 3; ++i) r.out[i] = normalize(cross(r.vertices[(i + 1) % 3] - r.vertices[i], front));
     r.index = index;
     r.original = t.original;
     r.touching = r.from_behind ? t.concave_edges : t.convex_edges;
     r.bent = t.convex_edges | t.concave_edges;
     return r;
+}
+
+// In the plane, at right angles to edge i = (vertex i, vertex i + 1), out of the triangle; as long as the edge.
+inline Vec3 out_across(const Triangle& t, int i) {
+    Vec3 along = t.vertices[(i + 1) % 3] - t.vertices[i];
+    return t.from_behind ? cross(t.normal, along) : cross(along, t.normal);
 }
 
 // As a face to clip with: counter-clockwise about the normal.
