@@ -26,16 +26,65 @@ public:
             normals_.push_back(triangle_normal(points, surface, t));
             edge_of_.push_back(3 * t);
         }
+        joined_.resize(surface.triangle_count(), false);
+        region_.resize(surface.triangle_count(), none);
     }
 
     PolygonSurface run() {
         for (uint32_t face : triangles_by_area(normals_))
-            if (edge_of_[face] != none) grow(face);
+            if (edge_of_[face] != none && !joined_[face] && !join_region(face)) grow(face);
         return write();
     }
 
 private:
     Vec3d at(uint32_t edge) const { return to_double(points_[origin_[edge]]); }
+
+    // Whether the corner behind `edge` lies in the plane of a face and the face's normal agrees.
+    bool coplanar(uint32_t edge, Vec3d origin, Vec3d normal) const {
+        return dot(normal, normals_[face_[edge]].unit) >= same_face_cosine &&
+               absolute_value(dot(normal, at(next_[next_[edge]]) - origin)) <= 2.0 * tolerance_;
+    }
+
+    // Joins all triangles in one plane with the face at once, if together they make a convex polygon. Taken one by one
+    // they might not: three triangles around one in the middle of a hexagon.
+    bool join_region(uint32_t face) {
+        Vec3d origin = at(edge_of_[face]), normal = normals_[face].unit;
+        std::vector<uint32_t> members{face}, doors;
+        region_[face] = face;
+        for (size_t i = 0; i < members.size(); ++i) {
+            for (uint32_t e = 3 * members[i]; e < 3 * members[i] + 3; ++e) {
+                uint32_t twin = twin_[e], other = face_[twin];
+                if (region_[other] == face || joined_[other] || !coplanar(twin, origin, normal)) continue;
+                region_[other] = face;
+                members.push_back(other);
+                doors.push_back(e);
+            }
+        }
+        if (doors.empty() || !outline_is_convex(members, face)) return false;
+        for (uint32_t e : doors) edge_of_[face] = join(e);
+        for (uint32_t m : members) joined_[m] = true;
+        return true;
+    }
+
+    bool outline_is_convex(const std::vector<uint32_t>& members, uint32_t region) const {
+        auto inside = [&](uint32_t edge) { return region_[face_[edge]] == region && !joined_[face_[edge]]; };
+        uint32_t borders = 0, start = none;
+        for (uint32_t t : members)
+            for (uint32_t e = 3 * t; e < 3 * t + 3; ++e)
+                if (!inside(twin_[e])) start = e, ++borders;
+        if (borders != members.size() + 2) return false;  // Euler: not a disc, or corners lie inside of it
+        uint32_t steps = 0, straight = 0, e = start;
+        do {
+            uint32_t out = next_[e];
+            while (inside(twin_[out])) out = next_[twin_[out]];
+            Junction j = junction(e, out);
+            if (!junction_fits(j, normals_[region].unit)) return false;
+            if (j.only_two_faces) ++straight;
+            e = out;
+            ++steps;
+        } while (e != start && steps <= borders);
+        return steps == borders && straight <= 1;
+    }
 
     // Takes in neighbours until none fits, going around the outline.
     void grow(uint32_t face) {
@@ -43,6 +92,7 @@ private:
         uint32_t edge = edge_of_[face], start = edge;
         do {
             if (fits(edge, origin)) {
+                joined_[face] = joined_[face_[twin_[edge]]] = true;
                 edge = start = previous_[join(edge)];
                 edge_of_[face] = edge;
             } else {
@@ -161,6 +211,8 @@ private:
     std::vector<uint32_t> origin_, twin_, next_, previous_, face_;  // by half edge
     std::vector<uint32_t> edge_of_;                                 // by face; none: joined to another
     std::vector<TriangleNormal> normals_;                           // of the triangle that the face grew from
+    std::vector<bool> joined_;                                      // by triangle: part of a larger face
+    std::vector<uint32_t> region_;                                  // by triangle: where it was last thought to belong
 };
 
 }  // namespace

@@ -68,11 +68,11 @@ private:
         while (count < 8) {
             int widest = choose(parts, count, depth);
             if (widest < 0) break;
-            parts[count] = split(parts[widest], depth);
+            Part upper = split(parts[widest], depth);
+            for (int i = count; i > widest + 1; --i) parts[i] = parts[i - 1];  // in the order of their triangles
+            parts[widest + 1] = upper;
             ++count;
         }
-        std::sort(parts, parts + count,
-                  [](const Part& a, const Part& b) { return a.first < b.first; });  // order: total
         MeshNode node;
         for (int i = 0; i < 8; ++i) {
             const Bounds box = i < count ? parts[i].box : Bounds{};
@@ -96,15 +96,15 @@ private:
             if (parts[i].count > leaf_size) fill(static_cast<uint32_t>(node.child[i]), parts[i], depth + 1);
     }
 
-    // The part to split next: that with the largest surface; deep down that with the most triangles. -1: all are
-    // leaves.
+    // The part to split next: that with the largest surface (of equal ones the fullest); deep down that with the most
+    // triangles. -1: all are leaves.
     static int choose(const Part* parts, int count, int depth) {
         int best = -1;
         float measure = -1.0f;
         for (int i = 0; i < count; ++i) {
             if (parts[i].count <= leaf_size) continue;
             float m = depth < heuristic_depth ? parts[i].box.area() : static_cast<float>(parts[i].count);
-            if (m > measure) measure = m, best = i;
+            if (m > measure || (m == measure && parts[i].count > parts[best].count)) measure = m, best = i;
         }
         return best;
     }

@@ -44,17 +44,18 @@ struct Facet {
 class Builder {
 public:
     Builder(std::span<const LatticePoint> points, std::span<const double> slack)
-        : points_(points), slack_(slack), next_(points.size(), none), cone_at_(points.size(), none) {}
+        : points_(points), slack_(slack), next_(points.size(), none), cone_at_(points.size(), none) {
+        for (double s : slack) admitted_slack_ = s < admitted_slack_ ? s : admitted_slack_;
+    }
 
     Rank run(double flat, TriangleSurface& surface) {
         std::array<uint32_t, 4> start{};
         Rank rank = choose_simplex(flat, start);
         if (rank != Rank::space) return rank;
         make_simplex(start);
-        for (size_t i = 0; i < pending_.size(); ++i) {  // grows on the way
-            uint32_t f = pending_[i];
-            if (facets_[f].alive && facets_[f].farthest != none) insert(facets_[f].farthest, f);
-        }
+        insert_pending();
+        admit_all();
+        insert_pending();
         write(surface);
         return Rank::space;
     }
@@ -78,6 +79,7 @@ private:
         uint32_t index = origin;
         double largest = 0.0;
         for (uint32_t i = 0; i < points_.size(); ++i) {
+            if (slack_[i] > admitted_slack_) continue;
             double m = measure(to_double(difference(points_[i], points_[origin])));
             if (m > largest) largest = m, index = i;
         }
@@ -109,6 +111,32 @@ private:
         if (side == 0) return Rank::plane;
         if (side > 0) std::swap(s[1], s[2]);  // the fourth must lie behind
         return Rank::space;
+    }
+
+    void insert_pending() {
+        for (size_t i = 0; i < pending_.size(); ++i) {  // grows on the way
+            uint32_t f = pending_[i];
+            if (facets_[f].alive && facets_[f].farthest != none) insert(facets_[f].farthest, f);
+        }
+        pending_.clear();
+    }
+    // Points with more than the least slack were only carried along until now: put in early, they would become corners
+    // although others, put in later, leave them within their slack.
+    void admit_all() {
+        admitted_slack_ = 1e300;
+        for (uint32_t id = 0; id < facets_.size(); ++id) {
+            Facet& f = facets_[id];
+            if (!f.alive || f.first == none) continue;
+            for (uint32_t p = f.first; p != none; p = next_[p]) offer(f, p, distance(f, p));
+            pending_.push_back(id);
+        }
+    }
+    void offer(Facet& f, uint32_t p, double height) const {
+        if (slack_[p] > admitted_slack_) return;
+        if (height > f.farthest_distance || (height == f.farthest_distance && p < f.farthest)) {
+            f.farthest = p;
+            f.farthest_distance = height;
+        }
     }
 
     uint32_t add_facet(uint32_t a, uint32_t b, uint32_t c) {
@@ -163,10 +191,7 @@ private:
         Facet& f = facets_[facet];
         next_[p] = f.first;
         f.first = p;
-        if (height > f.farthest_distance || (height == f.farthest_distance && p < f.farthest)) {
-            f.farthest = p;
-            f.farthest_distance = height;
-        }
+        offer(f, p, height);
     }
 
     // A point that hardly stands out of any new facet can still stand far out of an old one beyond them.
@@ -249,6 +274,7 @@ private:
 
     std::span<const LatticePoint> points_;
     std::span<const double> slack_;
+    double admitted_slack_ = 1e300;  // points with more may not become corners yet; at first the least of all
     std::vector<Facet> facets_;
     std::vector<uint32_t> free_, pending_;  // facets to reuse; facets to look at
     std::vector<uint32_t> next_;            // by point: the next one on the same facet's list

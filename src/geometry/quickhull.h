@@ -30,7 +30,8 @@ enum class Rank : uint8_t { point, line, plane, space };
 
 // The hull of `points`. Point i becomes a corner only where it lies more than slack[i] outside of the hull of corners
 // found so far (lattice units, >= 1e-3); hence in the end no point lies more than its slack outside of the plane of any
-// triangle. Anything but Rank::space leaves `surface` empty. Depends on values and order of the points alone.
+// triangle. Points with the least slack of all go first, the others follow where they still stand out. Anything but
+// Rank::space leaves `surface` empty. Depends on values and order of the points alone.
 Rank quickhull(std::span<const LatticePoint> points, std::span<const double> slack, double flat,
                TriangleSurface& surface);
 
