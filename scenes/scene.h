@@ -23,7 +23,7 @@ struct Scene {
     std::function<void(World&, int step)> before_step;  // may be empty: spawns, kinematic motion
     std::vector<std::string> warnings;                  // of loading
     // Names of colliders that differ from their body's: nodes of a file below a moving one.
-    std::vector<std::pair<ColliderId, std::string>> collider_names;
+    std::vector<std::pair<ColliderId, std::string>> collider_names{};
 };
 
 struct SceneInfo {

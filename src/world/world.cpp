@@ -1,9 +1,6 @@
 // Worlds: settings, handles, iteration, figures.
 #include "lendulet/world.h"
 
-#include <cstdio>
-#include <cstdlib>
-
 #include "base/hash.h"
 #include "world/validate.h"
 #include "world/world_data.h"
@@ -62,13 +59,6 @@ WorldData::WorldData(const WorldConfig& settings)
       solver(&memory, settings.width),
       island_parent(&memory),
       island_still(&memory) {}
-
-namespace detail {
-void fail(const Error& error) {
-    std::fprintf(stderr, "lendulet: %s\n", error.message.c_str());
-    std::exit(2);
-}
-}  // namespace detail
 
 Result<World> WorldBuilder::build() const {
     if (Status s = check_config(config_); !s) return s.error();
