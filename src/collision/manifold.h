@@ -8,13 +8,13 @@
 namespace lendulet {
 
 struct ManifoldPoint {
-    Vec3 position;         // half way between the two surfaces; world axes, relative to the position of shape A
-    float separation;      // along the normal, m; negative = overlap
-    uint32_t id;           // names the two features that meet; equal ids from step to step are the same point
+    Vec3 position;     // half way between the two surfaces; world axes, relative to the position of shape A
+    float separation;  // along the normal, m; negative = overlap
+    uint32_t id;       // names the two features that meet; equal ids from step to step are the same point
 };
 
 struct Manifold {
-    Vec3 normal;           // unit, world axes, from A to B
+    Vec3 normal;  // unit, world axes, from A to B
     int count = 0;
     ManifoldPoint points[4];
     // How the points move while the bodies turn and slide within a step. A point of a ball does not turn with it: only

@@ -22,9 +22,9 @@ struct CollideSettings {
     SimplexSolver simplex = SimplexSolver::half_space;
 };
 
-// The last separating or contact direction and feature, kept from step to step with the pair.
+// What is kept from step to step with the pair: the axis or reference face of the last contact, as hysteresis, and the
+// start of the next distance query. Results depend on poses and cache alone.
 struct PairCache {
-    Vec3 axis;           // world axes would turn with the bodies: frame of A
     uint32_t feature = 0;
     GjkCache gjk;
 };
