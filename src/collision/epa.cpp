@@ -12,6 +12,8 @@ namespace {
 // when a support point rises less than this above the nearest face.
 constexpr double flat = 1e-11, merge = 1e-14;
 constexpr double surface = 1e-9, surface_curved = 1e-7;
+// Only by rounding can a support point that the polytope already has rise above a face, and not by more than this.
+constexpr double repeated = 1e-6;
 // A smooth minimum counts when its support point misses the line from the origin by less than this, and is taken for
 // the least of all when the polytope proves it to within the second.
 constexpr double tangent = 1e-8, surface_smooth = 4e-6;
@@ -166,11 +168,13 @@ Penetration descend(const CoreDifference& difference, Vec3d n, int expansions) {
 // lies in one of them.
 void foot_on_face(const CoreDifference& difference, const Polytope& polytope, int f, double tolerance,
                   Penetration& result) {
-    const double distance = polytope.distance(f), sideways = 1e-7 * difference.size;
+    const Vec3d n = polytope.normal(f);
+    const double distance = polytope.distance(f, n), sideways = 1e-7 * difference.size;
     double least = 1e300;
     for (int g = f, next = 0; g < polytope.face_end(); g = next++) {
-        bool coplanar = dot(polytope.normal(g), polytope.normal(f)) > 1.0 - 1e-10;
-        if (!coplanar || !(polytope.distance(g) <= distance + tolerance)) continue;
+        if (!polytope.alive(g)) continue;
+        const Vec3d m = polytope.normal(g);
+        if (!(dot(m, n) > 1.0 - 1e-10) || !(polytope.distance(g, m) <= distance + tolerance)) continue;
         Simplex corners = polytope.triangle(g);
         SubSimplex part = closest_barycentric(corners.y, 3);
         if (!(length_squared(part.point) < least)) continue;
@@ -194,13 +198,13 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
     SmoothMinimum smooth{{}, false, difference.curved ? 0.1 * size : -1.0};
     for (int expansions = 0;; ++expansions) {
         int f = polytope.nearest_face();
-        Vec3d n = polytope.normal(f);
+        const Vec3d n = polytope.normal(f);
         DifferencePoint p = difference.support(n);
-        double lower = polytope.distance(f), upper = dot(n, p.y), gap = upper - lower;
+        double lower = polytope.distance(f, n), upper = dot(n, p.y), gap = upper - lower;
         smooth.look(difference, n, lower, gap);
         bool proven = smooth.found && smooth.tangency.height - lower <= surface_smooth * size;
-        bool last = proven || !(gap > tolerance) || expansions == max_expansions || polytope.holds(p.y) ||
-                    !polytope.expand(f, p);
+        bool last = proven || !(gap > tolerance) || expansions == max_expansions ||
+                    (gap < repeated * size && polytope.holds(p.y)) || !polytope.expand(f, p);
         if (!last) continue;
         if (difference.curved && !proven && gap > tolerance) result = descend(difference, n, expansions);
         else {

@@ -22,31 +22,34 @@ public:
     // Takes p, which lies beyond face f. False where rounding has left no clean outline to join it to.
     bool expand(int f, const DifferencePoint& p);
     bool holds(Vec3d y) const;
-    void retire(int f) { distance_[f] = far; }  // never again the nearest
 
-    Vec3d normal(int f) const { return faces_[f].n; }
     int face_end() const { return face_end_; }  // faces are 0 ... face_end() - 1, removed ones infinitely far
-    double distance(int f) const { return distance_[f]; }  // from the origin to the plane, positive inside
+    bool alive(int f) const { return key_[f] < far; }
+    Vec3d normal(int f) const { return (1.0 / square_root(faces_[f].nn)) * faces_[f].n; }
+    // From the origin to the plane of face f with normal n, positive where the origin lies inside.
+    double distance(int f, Vec3d n) const { return dot(n, y_[faces_[f].vertex[0]]); }
     Simplex triangle(int f) const;
 
 private:
     static constexpr double far = 1e300;
     struct Face {
-        Vec3d n;               // unit, outward; zero for a face without area
+        Vec3d n;  // outward, of any length; zero for a face without area
+        double nn;
         uint8_t vertex[3];     // counter-clockwise seen from outside
         uint8_t neighbour[3];  // across the edge from vertex[i] to vertex[i + 1]
     };
     struct Edge {
-        uint8_t from, to, outer;  // outer: the face that stays
+        uint8_t from, to;
+        uint8_t outer, outer_edge;  // the face that stays, and which of its edges this is
     };
 
     void set_face(int f, int i, int j, int k);
     int add_vertex(const DifferencePoint& p);
-    int collect_visible(int f, Vec3d y);
-    int collect_outline(int visible_count);
-    bool is_one_loop(int edge_count);
+    bool lies_above(Vec3d y, const Face& face) const;
+    void collect_visible(int f, int entered, Vec3d y);
+    bool outline_is_simple();
 
-    int vertex_count_, face_end_, free_count_;
+    int vertex_count_, face_end_, free_count_, visible_count_, edge_count_;
     double tolerance_;
     // Unions without a constructed member: see the constructor.
     union {
@@ -61,11 +64,11 @@ private:
     union {
         Face faces_[max_faces];
     };
-    double distance_[max_faces];
+    double key_[max_faces];  // the distance times its absolute value, which orders faces without a square root
     uint8_t free_[max_faces], visible_[max_faces];
     bool is_visible_[max_faces];
     Edge outline_[max_faces];
-    uint8_t edge_from_[max_vertices];  // outline edge that starts at a vertex
+    uint8_t last_seen_[max_vertices];  // the expansion in whose outline a vertex was last
 };
 
 }  // namespace lendulet

@@ -5,7 +5,9 @@
 // edge it is the plane through the vertex at right angles to the edge; between an edge and a face the plane through the
 // edge at right angles to the face; between a face and the inside the face itself. Each test is always computed from
 // the points in rising order, so that both sides of a boundary see the same sign and the walk cannot swing between
-// them.
+// them. It starts at the whole simplex: the origin is inside, or beyond a face; beyond an edge of that face, or above
+// it; and so on. Downward steps alone can miss the nearest part, hence edges also look up to their other face, and
+// vertices to their other edges.
 #include "collision/simplex.h"
 
 namespace lendulet {
@@ -16,47 +18,90 @@ constexpr double collinear = 1e-18;
 // A walk visits each of the 15 parts once at most where signs are exact; more steps mean that rounding misleads it.
 constexpr int max_steps = 16;
 
-struct Face {
-    Vec3d n;
-    double area[3];  // signed, times 2 |n|: how far inside each edge the origin lies; area[m] is opposite to corner m
-    bool flat;
-};
-
-Face make_face(const Vec3d* y, int i, int j, int k) {
-    Vec3d ij = y[j] - y[i], ik = y[k] - y[i], n = cross(ij, ik);
-    bool flat = !(dot(n, n) > collinear * dot(ij, ij) * dot(ik, ik));
-    return {n, {dot(n, cross(y[j], y[k] - y[j])), -dot(n, cross(y[k], ik)), dot(n, cross(y[i], ij))}, flat};
-}
-
+// Corners in rising order.
 struct Part {
     int count;
     int index[3];
 };
-// The three corners in rising order.
-Part sorted_face(int i, int j, int k) {  // i < j
-    if (k < i) return {3, {k, i, j}};
-    if (k < j) return {3, {i, k, j}};
-    return {3, {i, j, k}};
+constexpr Part opposite_face[4] = {{3, {1, 2, 3}}, {3, {0, 2, 3}}, {3, {0, 1, 3}}, {3, {0, 1, 2}}};
+
+struct Face {
+    Vec3d ij, ik, n;
+    bool flat;
+};
+LENDULET_FORCE_INLINE Face make_face(const Vec3d* y, Part p) {
+    Vec3d ij = y[p.index[1]] - y[p.index[0]], ik = y[p.index[2]] - y[p.index[0]], n = cross(ij, ik);
+    return {ij, ik, n, !(dot(n, n) > collinear * dot(ij, ij) * dot(ik, ik))};
 }
-Part sorted_edge(int i, int j) { return i < j ? Part{2, {i, j, 0}} : Part{2, {j, i, 0}}; }
-
+// How far inside the edge opposite to corner m of the face the origin lies: a signed area times 2 |n|.
+LENDULET_FORCE_INLINE double inside_edge(const Vec3d* y, Part p, const Face& face, int m) {
+    if (m == 0) return dot(face.n, cross(y[p.index[1]], y[p.index[2]] - y[p.index[1]]));
+    if (m == 1) return -dot(face.n, cross(y[p.index[2]], face.ik));
+    return dot(face.n, cross(y[p.index[0]], face.ij));
+}
 // Signed distance (times the edge's length) by which the origin lies beyond the plane through i towards j.
-double towards(const Vec3d* y, int i, int j) { return dot(y[i], y[i] - y[j]); }
+LENDULET_FORCE_INLINE double towards(const Vec3d* y, int i, int j) { return dot(y[i], y[i] - y[j]); }
 
-enum class Step { settled, moved, inside, lost };
+enum class Step : uint8_t { settled, moved, lost };
 
-Step walk_from_vertex(const Vec3d* y, int count, Part& part) {
-    int i = part.index[0];
-    for (int j = count - 1; j >= 0; --j)
-        if (j != i && towards(y, i, j) > 0.0) {
-            part = sorted_edge(i, j);
+struct Walk {
+    const Vec3d* y;
+    int count;
+    Part part;
+    bool beyond[4];  // of a tetrahedron: the origin lies beyond the face opposite to the corner
+    SubSimplex result;
+
+    Step from_tetrahedron();
+    Step from_face();
+    Step from_edge();
+    Step from_vertex();
+    Step to_face_beyond();
+};
+
+// To the newest face the origin lies beyond; the newest point is the last.
+LENDULET_FORCE_INLINE Step Walk::to_face_beyond() {
+    for (int m = 0; m < 4; ++m)
+        if (beyond[m]) {
+            part = opposite_face[m];
             return Step::moved;
         }
+    return Step::lost;
+}
+
+LENDULET_FORCE_INLINE Step Walk::from_tetrahedron() {
+    Vec3d e1 = y[1] - y[0], e2 = y[2] - y[0], e3 = y[3] - y[0];
+    Vec3d n1 = cross(e2, e3), n2 = cross(e3, e1), n3 = cross(e1, e2), n0 = cross(y[2] - y[1], y[3] - y[1]);
+    double volume = dot(n3, e3);
+    if (is_flat(y, e1, e2, e3, volume)) return Step::lost;
+    // Volumes that the origin makes with each face, positive on the inner side.
+    double sign = volume < 0.0 ? -1.0 : 1.0;
+    double u[4] = {sign * dot(n0, y[1]), -sign * dot(n1, y[0]), -sign * dot(n2, y[0]), -sign * dot(n3, y[0])};
+    for (int m = 0; m < 4; ++m) beyond[m] = !(u[m] > 0.0);
+    if (to_face_beyond() == Step::moved) return Step::moved;
+    double scale = 1.0 / (u[0] + u[1] + u[2] + u[3]);
+    result = {4, {0, 1, 2, 3}, {scale * u[0], scale * u[1], scale * u[2], scale * u[3]}, {}};
     return Step::settled;
 }
 
-Step walk_from_edge(const Vec3d* y, int count, Part& part, SubSimplex& result) {
-    int i = part.index[0], j = part.index[1];
+LENDULET_FORCE_INLINE Step Walk::from_face() {
+    const int i = part.index[0], j = part.index[1], k = part.index[2];
+    // From below, the nearest part belongs to a face that the origin lies beyond.
+    if (count == 4 && !beyond[6 - i - j - k]) return to_face_beyond();
+    Face face = make_face(y, part);
+    if (face.flat) return Step::lost;
+    double area[3];
+    for (int m = 0; m < 3; ++m) {
+        area[m] = inside_edge(y, part, face, m);
+        if (area[m] > 0.0) continue;
+        part = m == 0 ? Part{2, {j, k, 0}} : m == 1 ? Part{2, {i, k, 0}} : Part{2, {i, j, 0}};
+        return Step::moved;
+    }
+    result = face_part(y, i, j, k, face.n, area[0], area[1], area[2]);
+    return Step::settled;
+}
+
+LENDULET_FORCE_INLINE Step Walk::from_edge() {
+    const int i = part.index[0], j = part.index[1];
     double ti = towards(y, i, j), tj = towards(y, j, i);
     if (!(ti > 0.0) || !(tj > 0.0)) {
         part = {1, {ti > 0.0 ? j : i, 0, 0}};
@@ -64,11 +109,11 @@ Step walk_from_edge(const Vec3d* y, int count, Part& part, SubSimplex& result) {
     }
     for (int k = count - 1; k >= 0; --k) {
         if (k == i || k == j) continue;
-        Part next = sorted_face(i, j, k);
-        Face face = make_face(y, next.index[0], next.index[1], next.index[2]);
         int corner = k < i ? 0 : k < j ? 1 : 2;
-        if (!face.flat && face.area[corner] > 0.0) {
-            part = next;
+        Part up = corner == 0 ? Part{3, {k, i, j}} : corner == 1 ? Part{3, {i, k, j}} : Part{3, {i, j, k}};
+        Face face = make_face(y, up);
+        if (!face.flat && inside_edge(y, up, face, corner) > 0.0) {
+            part = up;
             return Step::moved;
         }
     }
@@ -76,65 +121,40 @@ Step walk_from_edge(const Vec3d* y, int count, Part& part, SubSimplex& result) {
     return Step::settled;
 }
 
-// Whether the origin lies beyond the face opposite to corner m, seen from that corner.
-bool beyond_face(const Vec3d* y, int m) {
-    int i = m == 0 ? 1 : 0, j = m <= 1 ? 2 : 1, k = m <= 2 ? 3 : 2;
-    Vec3d n = cross(y[j] - y[i], y[k] - y[i]);
-    double origin = -dot(n, y[i]), corner = dot(n, y[m] - y[i]);
-    return corner > 0.0 ? origin <= 0.0 : origin >= 0.0;
-}
-
-// Behind a face the origin lies inside the tetrahedron or beyond another face.
-Step walk_through_face(const Vec3d* y, Part& part, int opposite) {
-    Vec3d e1 = y[1] - y[0], e2 = y[2] - y[0], e3 = y[3] - y[0];
-    if (is_flat(y, e1, e2, e3, dot(cross(e1, e2), e3))) return Step::lost;
-    for (int m = 3; m >= 0; --m)
-        if (m != opposite && beyond_face(y, m)) {
-            part = {3, {m == 0 ? 1 : 0, m <= 1 ? 2 : 1, m <= 2 ? 3 : 2}};
+LENDULET_FORCE_INLINE Step Walk::from_vertex() {
+    const int i = part.index[0];
+    for (int j = count - 1; j >= 0; --j)
+        if (j != i && towards(y, i, j) > 0.0) {
+            part = i < j ? Part{2, {i, j, 0}} : Part{2, {j, i, 0}};
             return Step::moved;
         }
-    return Step::inside;
-}
-
-Step walk_from_face(const Vec3d* y, int count, Part& part, SubSimplex& result) {
-    int i = part.index[0], j = part.index[1], k = part.index[2];
-    Face face = make_face(y, i, j, k);
-    if (face.flat) return Step::lost;
-    for (int m = 0; m < 3; ++m)
-        if (!(face.area[m] > 0.0)) {
-            part = m == 0 ? Part{2, {j, k, 0}} : m == 1 ? Part{2, {i, k, 0}} : Part{2, {i, j, 0}};
-            return Step::moved;
-        }
-    if (count == 4) {
-        int opposite = 6 - i - j - k;
-        if (!beyond_face(y, opposite)) return walk_through_face(y, part, opposite);
-    }
-    result = face_part(y, i, j, k, face.n, face.area[0], face.area[1], face.area[2]);
+    result = vertex_part(y, i);
     return Step::settled;
-}
-
-SubSimplex inside_part(const Vec3d* y) {
-    double volume[4], sum = 0.0;
-    for (int m = 0; m < 4; ++m) {
-        int i = m == 0 ? 1 : 0, j = m <= 1 ? 2 : 1, k = m <= 2 ? 3 : 2;
-        volume[m] = absolute(dot(y[i], cross(y[j] - y[i], y[k] - y[i])));
-        sum += volume[m];
-    }
-    return {4, {0, 1, 2, 3}, {volume[0] / sum, volume[1] / sum, volume[2] / sum, volume[3] / sum}, {}};
 }
 
 }  // namespace
 
 SubSimplex closest_half_space(const Vec3d* y, int count) {
-    Part part{1, {count - 1, 0, 0}};
-    SubSimplex result;
+    Walk walk;
+    walk.y = y;
+    walk.count = count;
+    walk.part = {count, {0, 1, 2}};
     for (int n = 0; n < max_steps; ++n) {
         Step step;
-        if (part.count == 1) step = walk_from_vertex(y, count, part);
-        else if (part.count == 2) step = walk_from_edge(y, count, part, result);
-        else step = walk_from_face(y, count, part, result);
-        if (step == Step::settled) return part.count == 1 ? vertex_part(y, part.index[0]) : result;
-        if (step == Step::inside) return inside_part(y);
+        switch (walk.part.count) {
+            case 1:
+                step = walk.from_vertex();
+                break;
+            case 2:
+                step = walk.from_edge();
+                break;
+            case 3:
+                step = walk.from_face();
+                break;
+            default:
+                step = walk.from_tetrahedron();
+        }
+        if (step == Step::settled) return walk.result;
         if (step == Step::lost) break;
     }
     return closest_barycentric(y, count);  // compares all parts by distance, which rounding cannot mislead far

@@ -163,6 +163,7 @@ Real outside(const Core& core, Vec p) {
     if (core.curved) return std::max<Real>(0, oracle::signed_distance(*core.curved, p));
     return oracle::outside(core.body, p);
 }
+constexpr Real smallest_size = 1e-30L;  // S of two points at one place
 bool finite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 }  // namespace
@@ -195,7 +196,7 @@ void Tally::certify(const Core& a, const Core& b, const Transform& t, const Conv
     Vec n = wide(r.normal);
     if (std::abs(norm(n) - 1) > 1e-6L) fail("normal not of unit length", a, b, t, r);
 
-    Real s = std::max<Real>(Real(a.size) + b.size, std::abs(r.distance));
+    Real s = std::max({Real(a.size) + b.size, std::abs(Real(r.distance)), smallest_size});
     oracle::Pose pose = oracle_pose(t);
     Vec pa = wide(r.point_a), pb = wide(r.point_b);
     Real off = std::max(outside(a, pa), outside(b, turned_back(pose, pb - pose.translation)));
@@ -218,7 +219,7 @@ void Tally::judge(const Core& a, const Core& b, const Transform& t, const Convex
     int bad_before = bad;
     certify(a, b, t, r);
     if (bad > bad_before) return;
-    Real s = std::max<Real>(Real(a.size) + b.size, std::abs(answer.distance));
+    Real s = std::max({Real(a.size) + b.size, std::abs(answer.distance), smallest_size});
     Real error = std::abs(r.distance - answer.distance) / s;
     bool apart = answer.distance >= 0;
     (apart ? distance : depth) = std::max(apart ? distance : depth, static_cast<double>(error));
