@@ -1,5 +1,6 @@
 // Simulates a built-in scene and writes what it looks like as a PPM image on standard output; scripts/picture makes it
 // a PNG. Usage: picture SCENE SECONDS [AZIMUTH_DEGREES [ELEVATION_DEGREES [ZOOM]]]
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
@@ -16,8 +17,14 @@ constexpr Vec3 palette[] = {{0.80f, 0.24f, 0.14f}, {0.90f, 0.55f, 0.10f}, {0.16f
                             {0.20f, 0.55f, 0.36f}, {0.78f, 0.70f, 0.52f}, {0.45f, 0.28f, 0.55f}};
 constexpr Vec3 static_colour{0.52f, 0.53f, 0.55f};
 
-// Opposite vertical walls stand between the viewer and what is inside; the scene is cut open by leaving out static
-// bodies that rise above the floor on the viewer's side.
+// Neighbours in creation order get colours that look unrelated (Fibonacci hashing).
+Vec3 colour_of(int body) {
+    uint32_t mixed = static_cast<uint32_t>(body + 1) * 2654435769u;
+    return palette[(mixed >> 16) % std::size(palette)];
+}
+
+// Walls would stand between the viewer and what is inside: static bodies that rise above the floor on the viewer's side
+// are left out.
 bool hides_the_scene(const StaticBodyRef& body, const picture::Camera& camera, const Aabb& region) {
     if (body.type() != BodyType::fixed) return false;
     Aabb box = body.aabb();
@@ -83,7 +90,7 @@ int main(int argc, char** argv) {
     for (int i = 0; i < world.body_count(); ++i) {
         StaticBodyRef body = world.get_static(world.body(i));
         if (hides_the_scene(body, camera, region)) continue;
-        Vec3 colour = body.type() == BodyType::dynamic ? palette[i % std::size(palette)] : static_colour;
+        Vec3 colour = body.type() == BodyType::dynamic ? colour_of(i) : static_colour;
         paint(body, colour, triangles);
     }
     picture::Image image = picture::draw(triangles, camera, width, height);
