@@ -7,7 +7,7 @@ namespace lendulet {
 
 void* Memory::allocate(size_t bytes) const {
     void* memory = allocate_hook ? allocate_hook(user, bytes, alignment)
-                                 : ::operator new(bytes, std::align_val_t{alignment}, std::nothrow);
+                                 : ::operator new (bytes, std::align_val_t{alignment}, std::nothrow);
     if (!memory) {
         std::fprintf(stderr, "lendulet: out of memory (%zu bytes)\n", bytes);
         std::abort();
@@ -17,7 +17,7 @@ void* Memory::allocate(size_t bytes) const {
 
 void Memory::free(void* memory, size_t bytes) const {
     if (free_hook) free_hook(user, memory, bytes, alignment);
-    else ::operator delete(memory, std::align_val_t{alignment});
+    else ::operator delete (memory, std::align_val_t{alignment});
 }
 
 #ifdef LENDULET_ASSERTIONS

@@ -46,7 +46,7 @@ struct TaskPool::Threads {
     std::mutex mutex;
     std::condition_variable wake;
     bool stop = false;
-    bool session = false;              // guarded by mutex for sleeping, read loosely while spinning
+    bool session = false;  // guarded by mutex for sleeping, read loosely while spinning
     std::atomic<bool> spinning{false};
     alignas(64) std::atomic<uint64_t> ticket{0};  // epoch << 32 | next chunk
     alignas(64) std::atomic<int> done{0};         // chunks finished in this epoch

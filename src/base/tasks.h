@@ -49,8 +49,9 @@ public:
             return;
         }
         using Fn = std::remove_reference_t<Body>;
-        dispatch(count, grain, [](void* c, int b, int e, int w) { (*static_cast<Fn*>(c))(b, e, w); },
-                 const_cast<void*>(static_cast<const void*>(&body)));
+        dispatch(
+            count, grain, [](void* c, int b, int e, int w) { (*static_cast<Fn*>(c))(b, e, w); },
+            const_cast<void*>(static_cast<const void*>(&body)));
     }
 
 private:

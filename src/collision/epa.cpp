@@ -164,6 +164,31 @@ Penetration descend(const CoreDifference& difference, Vec3d n, int expansions) {
     return best;
 }
 
+// Descends from the nearest face, then from others that may still hide a lesser depth, as long as they look elsewhere.
+Penetration descend_from_faces(const CoreDifference& difference, const Polytope& polytope, int expansions) {
+    constexpr int max_starts = 8;
+    constexpr double elsewhere = 0.95;  // cosine
+    Vec3d seen[2 * max_starts];
+    Penetration best{};
+    for (int starts = 0; starts < max_starts; ++starts) {
+        double least = starts == 0 ? 1e300 : best.depth - certified_distance * difference.size;
+        int f = -1;
+        for (int g = 0; g < polytope.face_end(); ++g) {
+            if (!polytope.alive(g)) continue;
+            Vec3d n = polytope.normal(g);
+            bool fresh = polytope.distance(g, n) < least;
+            for (int i = 0; fresh && i < 2 * starts; ++i) fresh = dot(n, seen[i]) < elsewhere;
+            if (fresh) least = polytope.distance(g, n), f = g;
+        }
+        if (f < 0) break;
+        Penetration found = descend(difference, polytope.normal(f), expansions);
+        seen[2 * starts] = polytope.normal(f);
+        seen[2 * starts + 1] = found.outward;
+        if (starts == 0 || found.depth < best.depth) best = found;
+    }
+    return best;
+}
+
 // The foot of the origin on the plane of face f. A face of the difference may be several coplanar triangles: the foot
 // lies in one of them.
 void foot_on_face(const CoreDifference& difference, const Polytope& polytope, int f, double tolerance,
@@ -206,7 +231,8 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
         bool last = proven || !(gap > tolerance) || expansions == max_expansions ||
                     (gap < repeated * size && polytope.holds(p.y)) || !polytope.expand(f, p);
         if (!last) continue;
-        if (difference.curved && !proven && gap > tolerance) result = descend(difference, n, expansions);
+        if (difference.curved && !proven && gap > tolerance)
+            result = descend_from_faces(difference, polytope, expansions);
         else {
             result = {maximum(upper, lower), n, {}, {}, gap, expansions};
             foot_on_face(difference, polytope, f, tolerance, result);

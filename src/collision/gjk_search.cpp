@@ -15,7 +15,7 @@ constexpr double touching = 1e-12;
 // The search ends when a support point lowers the distance by less than these: relative to the distance, which bounds
 // the error of the normal at every distance, and relative to S. Polytopes end exactly, at a vertex they already have.
 constexpr double relative_gap = 1e-9, relative_gap_curved = 1e-7;
-constexpr double absolute_gap = 1e-14, absolute_gap_curved = 3e-8;
+constexpr double absolute_gap = 1e-14, absolute_gap_curved = 1e-8;
 // Curved cores: Newton's method is tried when the distance is known to this times S, and again 100 times nearer. Its
 // result counts where the support point misses the line along the direction by less than `tangent` times S.
 constexpr double newton_gap = 0.02, tangent = 1e-9;

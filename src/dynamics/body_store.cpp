@@ -26,7 +26,10 @@ uint32_t BodyStore::add() {
 
 Pose BodyStore::user_pose(uint32_t slot) const { return pose[slot] * inverse(principal[slot]); }
 
-void BodyStore::set_user_pose(uint32_t slot, Pose user) { pose[slot] = user * principal[slot]; }
+void BodyStore::set_user_pose(uint32_t slot, Pose user) {
+    pose[slot] = user * principal[slot];
+    momenta[slot].x_low = {};
+}
 
 Vec3 BodyStore::velocity(uint32_t slot) const {
     const BodyMomenta& m = momenta[slot];
@@ -41,7 +44,8 @@ Vec3 BodyStore::angular_velocity(uint32_t slot) const {
 }
 
 SymMat3 BodyStore::inverse_inertia_world(uint32_t slot) const {
-    return rotate_diagonal(rotation_matrix<float>(QuatT<float>(pose[slot].orientation), 1.0f), mass[slot].inverse_inertia);
+    return rotate_diagonal(rotation_matrix<float>(QuatT<float>(pose[slot].orientation), 1.0f),
+                           mass[slot].inverse_inertia);
 }
 
 Vec3 BodyStore::inertia_times(uint32_t slot, Vec3 w) const {

@@ -1,8 +1,8 @@
 // All bodies of a world as a structure of arrays, by slot. Grouped by who reads what: a step touches poses, momenta and
 // masses of awake bodies; the rest is for the door.
 //
-// Positions and orientations are those of the principal frame: the centre of mass and the principal axes of inertia. The
-// user's body frame is recovered with `principal` where it is asked for.
+// Positions and orientations are those of the principal frame: the centre of mass and the principal axes of inertia.
+// The user's body frame is recovered with `principal` where it is asked for.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +18,10 @@ namespace lendulet {
 
 inline constexpr uint32_t no_slot = ~0u;
 
-// The conserved state. p_low is what rounding p lost so far (compensated summation), so that a body that falls for
-// minutes gains exactly m g t.
+// The conserved state. p_low and x_low are what rounding p and the position lost so far (compensated summation), so
+// that a body that falls or glides for minutes gains exactly m g t and v t.
 struct BodyMomenta {
-    Vec3 p, p_low, L;
+    Vec3 p, p_low, L, x_low;
 };
 
 struct BodyMass {
@@ -44,27 +44,33 @@ struct BodyInfo {
     bool asleep = false, allow_sleep = true, has_forces = false;
     bool capped = false, contained = false;  // in the last step: speed cut; state went non-finite and was put back
     float gravity_factor = 1.0f, linear_damping = 0.0f, angular_damping = 0.0f;
-    float still_time = 0.0f;       // how long it has been slow, s
-    float radius = 0.0f;           // of a sphere about the centre of mass that holds all colliders
+    float still_time = 0.0f;  // how long it has been slow, s
+    float radius = 0.0f;      // of a sphere about the centre of mass that holds all colliders
     uint32_t first_collider = no_slot;
     int32_t collider_count = 0;
-    int32_t solver_index = 0;      // in this step's SolverBodies
+    int32_t solver_index = 0;  // in this step's SolverBodies
     uint64_t user_data = 0;
 };
 
 struct BodyStore {
     Slots slots;
-    Array<Pose> pose;               // of the principal frame
-    Array<BodyMomenta> momenta;     // kinematic bodies: p holds velocity, L angular velocity
+    Array<Pose> pose;            // of the principal frame
+    Array<BodyMomenta> momenta;  // kinematic bodies: p holds velocity, L angular velocity
     Array<BodyMass> mass;
     Array<BodyForces> forces;
     Array<BodyChange> change;
     Array<BodyInfo> info;
-    Array<Transform> principal;     // principal frame in the user's body frame
+    Array<Transform> principal;  // principal frame in the user's body frame
     std::vector<std::string> name;
 
     explicit BodyStore(const Memory* memory)
-        : slots(memory), pose(memory), momenta(memory), mass(memory), forces(memory), change(memory), info(memory),
+        : slots(memory),
+          pose(memory),
+          momenta(memory),
+          mass(memory),
+          forces(memory),
+          change(memory),
+          info(memory),
           principal(memory) {}
 
     uint32_t add();

@@ -5,10 +5,14 @@ namespace {
 
 float combine(CombineRule rule, float a, float b) {
     switch (rule) {
-        case CombineRule::average: return 0.5f * (a + b);
-        case CombineRule::minimum: return minimum(a, b);
-        case CombineRule::maximum: return maximum(a, b);
-        case CombineRule::multiply: return a * b;
+        case CombineRule::average:
+            return 0.5f * (a + b);
+        case CombineRule::minimum:
+            return minimum(a, b);
+        case CombineRule::maximum:
+            return maximum(a, b);
+        case CombineRule::multiply:
+            return a * b;
     }
     return 0.0f;
 }

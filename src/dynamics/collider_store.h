@@ -32,7 +32,7 @@ inline bool filters_match(const CollisionFilter& a, const CollisionFilter& b) {
 struct ColliderInfo {
     uint32_t body = no_slot, next = no_slot;  // the body's next collider
     bool is_trigger = false;
-    float radius = 0.0f;       // of a sphere about the shape's position that holds it
+    float radius = 0.0f;  // of a sphere about the shape's position that holds it
     CollisionFilter filter{};
     uint64_t user_data = 0;
 };
@@ -46,7 +46,7 @@ struct ColliderPlace {
 struct ColliderStore {
     Slots slots;
     Array<Geometry> geometry;
-    Array<Transform> local;        // in the body's principal frame
+    Array<Transform> local;  // in the body's principal frame
     Array<Surface> surface;
     Array<ColliderInfo> info;
     Array<ColliderPlace> place;

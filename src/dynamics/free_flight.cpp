@@ -27,7 +27,10 @@ Quat turn(Quat q, Vec3 w, float h) {
 FlightState moved(const FlightState& s, Quat at, const Rates& r, float h) {
     Quat d = Quat{r.w.x, r.w.y, r.w.z, 0.0f} * at;
     float k = 0.5f * h;
-    return {s.x + h * r.x, {s.q.x + k * d.x, s.q.y + k * d.y, s.q.z + k * d.z, s.q.w + k * d.w}, s.p + h * r.p, s.L + h * r.L};
+    return {s.x + h * r.x,
+            {s.q.x + k * d.x, s.q.y + k * d.y, s.q.z + k * d.z, s.q.w + k * d.w},
+            s.p + h * r.p,
+            s.L + h * r.L};
 }
 
 FlightState runge_kutta(const FlightState& s, const FlightBody& b, float h) {

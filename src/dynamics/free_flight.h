@@ -1,5 +1,6 @@
-// Reference integrators for a body that touches nothing: explicit Euler as the thesis describes it (3.1, 3.2), symplectic
-// Euler, and the classical Runge-Kutta method. They exist to be compared with the momentum integrator of the solver.
+// Reference integrators for a body that touches nothing: explicit Euler as the thesis describes it (3.1, 3.2),
+// symplectic Euler, and the classical Runge-Kutta method. They exist to be compared with the momentum integrator of the
+// solver.
 #pragma once
 
 #include "lendulet/math.h"
@@ -15,8 +16,8 @@ struct FlightState {
 
 struct FlightBody {
     float inverse_mass;
-    Vec3 inverse_inertia;  // principal
-    Vec3 force, torque;    // constant, world axes
+    Vec3 inverse_inertia;                   // principal
+    Vec3 force, torque;                     // constant, world axes
     float linear_damping, angular_damping;  // 1/s
 };
 

@@ -1,5 +1,5 @@
-// Stable slots with generations: the bookkeeping behind every kind of handle. A slot keeps its index for life and is used
-// again after removal with a higher generation, so that old handles are recognised.
+// Stable slots with generations: the bookkeeping behind every kind of handle. A slot keeps its index for life and is
+// used again after removal with a higher generation, so that old handles are recognised.
 #pragma once
 
 #include <cstdint>

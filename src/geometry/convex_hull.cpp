@@ -61,7 +61,7 @@ Limits limits_of(std::span<const Vec3> points) {
     return r;
 }
 
-// The points on a lattice of 2^28 steps along their largest extent, and tolerances in its units.
+// The points on a lattice of 2^40 steps along their largest extent, and tolerances in its units.
 struct Lattice {
     std::vector<LatticePoint> points;
     double corner_tolerance, face_tolerance, flat;
@@ -74,12 +74,12 @@ Lattice make_lattice(std::span<const Vec3> points, Limits limits) {
         size = high - low > size ? high - low : size;
         reach += -low > high ? -low : high;
     }
-    constexpr double steps = 1 << lattice_bits;
+    constexpr auto steps = static_cast<double>(int64_t{1} << lattice_bits);
     double tolerance = 3.0 * 0x1p-24 * reach / size;
     tolerance = tolerance < least_tolerance ? least_tolerance : tolerance > most_tolerance ? most_tolerance : tolerance;
     Lattice lattice{{}, tolerance * steps, face_tolerance_factor * tolerance * steps, flat_fraction * steps};
     double scale = steps / size;
-    auto whole = [&](double a) { return static_cast<int32_t>(scale * a + 0.5); };
+    auto whole = [&](double a) { return static_cast<int64_t>(scale * a + 0.5); };
     lattice.points.reserve(points.size());
     for (Vec3 p : points) lattice.points.push_back({whole(p.x - lower.x), whole(p.y - lower.y), whole(p.z - lower.z)});
     return lattice;
@@ -95,7 +95,7 @@ Rank build_surface(const Lattice& lattice, TriangleSurface& surface) {
     for (int pass = 0; pass < 4; ++pass) {
         std::vector<uint32_t> kept = essential_corners(lattice.points, surface, lattice.face_tolerance);
         if (kept.size() == corners) break;
-        constexpr double always = 1e-3;
+        constexpr double always = 1.0;
         slack.assign(lattice.points.size(), lattice.face_tolerance);
         for (uint32_t v : kept) slack[v] = always;
         TriangleSurface simpler;
@@ -109,7 +109,7 @@ Rank build_surface(const Lattice& lattice, TriangleSurface& surface) {
 
 // Position along a curve that keeps neighbours together (Morton 1966): the bits of the coordinates interleaved.
 uint64_t morton_code(LatticePoint p) {
-    auto spread = [](int32_t a) {
+    auto spread = [](int64_t a) {
         uint64_t x = static_cast<uint64_t>(a) >> (lattice_bits - 20) & 0x1fffff;
         x = (x | x << 32) & 0x1f00000000ffff;
         x = (x | x << 16) & 0x1f0000ff0000ff;

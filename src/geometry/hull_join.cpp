@@ -162,28 +162,17 @@ private:
         if (edge_of_[face_[back]] == gone) edge_of_[face_[back]] = back;
     }
 
-    // Newell's normal of the outline, or the seed triangle's where that stands closer to all corners: the mean plane of
-    // a wide face is the better one, that of a narrow strip can tip over.
+    // Newell's normal of the outline, the mean of all corners. A narrow strip can tip it over, and its plane would cut
+    // the hull elsewhere; then the normal of the seed triangle stands, whose plane has the whole hull behind it.
     Vec3d final_normal(uint32_t face) const {
         uint32_t start = edge_of_[face];
-        Vec3d sum{}, origin = at(start);
+        Vec3d sum{}, origin = at(start), seed = normals_[face].unit;
         for (uint32_t e = start; next_[e] != start; e = next_[e]) sum += cross(at(e) - origin, at(next_[e]) - origin);
         double norm = __builtin_sqrt(dot(sum, sum));
-        Vec3d seed = normals_[face].unit, mean = norm > 0.0 ? (1.0 / norm) * sum : seed;
-        return unevenness(face, mean) <= unevenness(face, seed) ? mean : seed;
-    }
-    // How far the corners of the face and those next to it leave the half space behind the lowest corner's plane.
-    double unevenness(uint32_t face, Vec3d normal) const {
-        uint32_t start = edge_of_[face], e = start;
-        double lowest = dot(normal, at(e)), highest = lowest;
-        do {
-            double h = dot(normal, at(e)), neighbour = dot(normal, at(previous_[twin_[e]]));
-            if (h < lowest) lowest = h;
-            if (h > highest) highest = h;
-            if (neighbour > highest) highest = neighbour;
-            e = next_[e];
-        } while (e != start);
-        return highest - lowest;
+        if (!(norm > 0.0)) return seed;
+        Vec3d mean = (1.0 / norm) * sum, turn = mean - seed;
+        constexpr auto size = static_cast<double>(int64_t{1} << lattice_bits);
+        return __builtin_sqrt(dot(turn, turn)) * size <= tolerance_ ? mean : seed;
     }
 
     PolygonSurface write() const {

@@ -13,26 +13,21 @@ using Wide3 = Vec3T<int64_t>;
 using Vec3d = Vec3T<double>;
 constexpr uint32_t none = ~0u;
 
-Wide3 difference(LatticePoint a, LatticePoint b) {
-    return {int64_t{a.x} - b.x, int64_t{a.y} - b.y, int64_t{a.z} - b.z};
-}
+__extension__ typedef __int128 Int128;
+using Exact3 = Vec3T<Int128>;
+
+Wide3 difference(LatticePoint a, LatticePoint b) { return a - b; }
 Vec3d to_double(Wide3 v) { return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)}; }
 double norm(Vec3d v) { return __builtin_sqrt(dot(v, v)); }
 
-// The sign of n.d for |n| components below 2^58 and |d| components up to 2^28. n is split as 2^29 h + l, so that both
-// partial sums fit into 64 bits.
-int sign_of_dot(Wide3 n, Wide3 d) {
-    constexpr int64_t low_mask = (int64_t{1} << 29) - 1;
-    Wide3 h{n.x >> 29, n.y >> 29, n.z >> 29}, l{n.x & low_mask, n.y & low_mask, n.z & low_mask};
-    int64_t low = dot(l, d);
-    int64_t high = dot(h, d) + (low >> 29);
-    if (high != 0) return high > 0 ? 1 : -1;
-    return (low & low_mask) != 0 ? 1 : 0;
+// The normal (b - a) x (c - a), of at most 82 bits a component, without error.
+Exact3 exact_normal(LatticePoint a, LatticePoint b, LatticePoint c) {
+    Wide3 u = difference(b, a), v = difference(c, a);
+    return cross(Exact3{u.x, u.y, u.z}, Exact3{v.x, v.y, v.z});
 }
 
 struct Facet {
     uint32_t corner[3], twin[3];  // twin: half edge 3 facet + i
-    Wide3 normal;                 // not of unit length, exact
     Vec3d unit;
     uint32_t first = none;  // its points, through next_
     uint32_t farthest = none;
@@ -61,14 +56,15 @@ public:
     }
 
 private:
-    // Height above a facet's plane, in lattice units; its error is below 1e-6.
+    // Height above a facet's plane, in lattice units; its error is below `decided`.
     double distance(const Facet& f, uint32_t p) const {
         return dot(f.unit, to_double(difference(points_[p], points_[f.corner[0]])));
     }
     bool sees(uint32_t p, const Facet& f) const {
+        constexpr double decided = 0.01;  // eight roundings of numbers below 2^41
         double d = distance(f, p);
-        if (d > 1e-3 || d < -1e-3) return d > 0.0;
-        return sign_of_dot(f.normal, difference(points_[p], points_[f.corner[0]])) > 0;
+        if (d > decided || d < -decided) return d > 0.0;
+        return side_of(points_[f.corner[0]], points_[f.corner[1]], points_[f.corner[2]], points_[p]) > 0;
     }
 
     uint32_t farthest_from(uint32_t a) const {
@@ -151,8 +147,9 @@ private:
         Facet& f = facets_[id];
         f = Facet{};
         f.corner[0] = a, f.corner[1] = b, f.corner[2] = c;
-        f.normal = cross(difference(points_[b], points_[a]), difference(points_[c], points_[a]));
-        Vec3d n = to_double(f.normal);
+        // A narrow facet's normal is a small difference of large products: rounded once, it has the right direction.
+        Exact3 exact = exact_normal(points_[a], points_[b], points_[c]);
+        Vec3d n{static_cast<double>(exact.x), static_cast<double>(exact.y), static_cast<double>(exact.z)};
         f.unit = (1.0 / norm(n)) * n;
         return id;
     }
@@ -286,7 +283,10 @@ private:
 }  // namespace
 
 int side_of(LatticePoint a, LatticePoint b, LatticePoint c, LatticePoint d) {
-    return sign_of_dot(cross(difference(b, a), difference(c, a)), difference(d, a));
+    Exact3 n = exact_normal(a, b, c);
+    Wide3 v = difference(d, a);
+    Int128 height = dot(n, Exact3{v.x, v.y, v.z});
+    return height > 0 ? 1 : height < 0 ? -1 : 0;
 }
 
 Rank quickhull(std::span<const LatticePoint> points, std::span<const double> slack, double flat,

@@ -21,10 +21,10 @@ double exponential_of_minus(double y) {
 
 Decay decay(float rate, float h) {
     double y = static_cast<double>(rate) * h;
-    if (!(y > 0.0)) return {1.0f, 1.0f};
+    if (!(y > 0.0)) return {0.0f, 1.0f};
     double factor = exponential_of_minus(y);
     double mean = y < 1e-3 ? 1.0 - y * (0.5 - y * (1.0 / 6.0 - y / 24.0)) : (1.0 - factor) / y;
-    return {static_cast<float>(factor), static_cast<float>(mean)};
+    return {static_cast<float>(mean * y), static_cast<float>(mean)};
 }
 
 }  // namespace lendulet

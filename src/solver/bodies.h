@@ -4,8 +4,8 @@
 // transposing quads (LEADS: hardware gather and component arrays were both slower). BodyMotion is read and written once
 // a substep by the integrator, front to back, and never gathered.
 //
-// The first `reserved_bodies` entries are at rest with infinite mass: they stand for every static body and for the empty
-// lanes of a partly filled block, so kernels need no branches.
+// The first `reserved_bodies` entries are at rest with infinite mass: they stand for every static body and for the
+// empty lanes of a partly filled block, so kernels need no branches.
 #pragma once
 
 #include <cstdint>
@@ -18,40 +18,48 @@ inline constexpr int reserved_bodies = 16;
 inline constexpr int static_body = 8;  // the reserved entry that contacts with static bodies name; never stored to
 
 struct alignas(64) BodyState {
-    float v[3];           // velocity of the centre of mass, m/s
-    float inverse_mass;   // 0: not moved by constraints
-    float w[3];           // angular velocity, world axes, rad/s
+    float v[3];          // change of the velocity since the start of the step, m/s
+    float inverse_mass;  // 0: not moved by constraints
+    float w[3];          // change of the angular velocity, world axes, rad/s
     float unused0;
-    float dp[3];          // displacement since the start of the step, m
-    float unused1;
-    float dq[4];          // rotation since the start of the step
+    float dp[3];   // displacement since the start of the step, m
+    float gyro_z;  // see BodyInertia
+    float dq[4];   // rotation since the start of the step
+};
+
+// Velocities at the start of the step: never written while it runs. Rows work on changes, so that what contacts add and
+// take away again in every substep is not rounded to the precision of a large velocity.
+struct alignas(32) BodyStart {
+    float v[3], unused0;
+    float w[3], unused1;
 };
 
 // World inverse inertia of this substep: xx yy zz xy xz yz.
 struct alignas(32) BodyInertia {
     float inverse[6];
-    float unused[2];
+    float gyro_x,
+        gyro_y;  // where there are joints, from kick to drift: angular acceleration by the body's own spin, rad/s^2
 };
 
 struct alignas(64) BodyMotion {
-    float q0[4];                // orientation of the principal axes at the start of the step
-    float inertia[3];           // principal, kg m^2; 0 for kinematic bodies
-    float linear_decay;         // exp(-damping h)
-    float inverse_inertia[3];   // principal
-    float angular_decay;
+    float q0[4];               // orientation of the principal axes at the start of the step
+    float inertia[3];          // principal, kg m^2; 0 for kinematic bodies
+    float linear_loss;         // 1 - exp(-damping h)
+    float inverse_inertia[3];  // principal
+    float angular_loss;
     float angular_momentum[3];  // L, world axes
     float anisotropy;           // largest over smallest principal moment; 1: turns about a fixed axis
     float acceleration[3];      // gravity and applied forces over the substep, damping included
     float free;                 // 1: no constraint acts on this body in this step
     float torque[3];            // applied, world axes, damping included
-    float unused0;
+    float joints;               // 1: has joints; 2: and its group touches nothing: a split kick. Set by the solver
     float v_ref[3], unused1;    // velocities as the running pass of constraints found them
     float w_ref[3], unused2;
-    float dv[3], unused3;       // what constraints added since the last kick: the next substep's warm start
+    float dv[3], unused3;  // what constraints added since the last kick: the next substep's warm start
     float dw[3], unused4;
     float v_start[3], unused5;  // velocity and L at the start of the substep ...
     float L_start[3], unused6;
-    float change_v[3], unused7; // ... and how the substep before changed them: the acceleration the drift expects
+    float change_v[3], unused7;  // ... and how the substep before changed them: the acceleration the drift expects
     float change_L[3], unused8;
     float unused9[8];
 };
@@ -60,10 +68,11 @@ static_assert(sizeof(BodyState) == 64 && sizeof(BodyInertia) == 32 && sizeof(Bod
 struct SolverBodies {
     Array<BodyState> state;
     Array<BodyInertia> inertia;
+    Array<BodyStart> start;
     Array<BodyMotion> motion;
     int count = 0;  // with the reserved ones; arrays are padded to a multiple of 16
 
-    explicit SolverBodies(const Memory* memory) : state(memory), inertia(memory), motion(memory) {}
+    explicit SolverBodies(const Memory* memory) : state(memory), inertia(memory), start(memory), motion(memory) {}
     // Makes room for `moving` bodies and sets the reserved and padding entries.
     void reset(int moving);
 };

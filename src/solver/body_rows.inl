@@ -11,6 +11,11 @@
 // Drift: a body that accelerates evenly moves by the mean of its velocities at both ends of the substep, which makes free
 // flight, sliding and swinging second-order accurate; a body that is being stopped moves by its final velocity, which is
 // what its contacts asked for. Evenly means that the velocity changes now as it did in the substep before.
+//
+// Bodies with joints: joint impulses are no part of the warm start, see joint_passes.inl; the drift goes by the velocity
+// that the joints' biased pass chose. Where nothing but joints constrains a group of bodies, the kick is split: half of
+// the applied forces acts before the drift and half after it (kick-drift-kick), and what joints add follows in the relax
+// pass. Elsewhere all of the kick comes first, as contacts want it.
 
 template <int W>
 struct MotionBlock {
@@ -18,13 +23,13 @@ struct MotionBlock {
     static constexpr int stride = sizeof(BodyMotion) / sizeof(float);
     LENDULET_FORCE_INLINE static Vec3T<F> load(const BodyMotion* m, int first, int quad, F& w) {
         F q[4];
-        load4<W>(m->q0, first, stride, 4 * quad, q);
+        load4<W>(floats_of(m), first, stride, 4 * quad, q);
         w = q[3];
         return {q[0], q[1], q[2]};
     }
     LENDULET_FORCE_INLINE static void store(BodyMotion* m, int first, int quad, Vec3T<F> v, F w) {
         F q[4] = {v.x, v.y, v.z, w};
-        store4<W>(m->q0, first, stride, 4 * quad, q);
+        store4<W>(floats_of(m), first, stride, 4 * quad, q);
     }
 };
 enum MotionQuad { quad_q0, quad_inertia, quad_inverse, quad_L, quad_acceleration, quad_torque, quad_v_ref, quad_w_ref,
@@ -84,6 +89,28 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
     return q;
 }
 
+template <class F>
+struct JointMode {
+    F jointed, split;  // 1 or 0
+};
+template <class F>
+LENDULET_FORCE_INLINE JointMode<F> joint_mode(F joints) {
+    const F one = splat<F>(1.0f), zero = splat<F>(0.0f);
+    return {select(joints > splat<F>(0.5f), one, zero), select(joints > splat<F>(1.5f), one, zero)};
+}
+
+// Leaves dw/dt = I^-1 (L x w), the change of w at constant L, where joints find it with the state that they load anyway.
+template <int W>
+LENDULET_FORCE_INLINE void store_gyro(SolverBodies& bodies, const int32_t* index, const SymMat3T<Wide<float, W>>& I,
+                                      Vec3T<Wide<float, W>> L, Vec3T<Wide<float, W>> w) {
+    Vec3T<Wide<float, W>> gyro = I * cross(L, w), dp;
+    QuatT<Wide<float, W>> dq;
+    load_displacement<W>(bodies.state.data(), index, dp, dq);
+    Wide<float, W> p[4] = {dp.x, dp.y, dp.z, gyro.z}, i1[4] = {I.xz, I.yz, gyro.x, gyro.y};
+    scatter4<W>(floats_of(bodies.state.data()), index, 16, 8, p);
+    scatter4<W>(floats_of(bodies.inertia.data()), index, 8, 4, i1);
+}
+
 template <int W>
 void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, bool first_substep, int begin, int end) {
     using F = Wide<float, W>;
@@ -92,11 +119,11 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, bool first_sub
     for (int i = begin; i < end; i += W) {
         int32_t index[W];
         for (int l = 0; l < W; ++l) index[l] = i + l;
-        WideVelocity<F> x = load_velocity<W>(bodies.state.data(), index);
+        WideVelocity<F> x = load_velocity<W>(bodies.state.data(), index), start = load_start<W>(bodies.start.data(), index);
         auto movable = x.inverse_mass > splat<F>(0.0f);
-        F unused, linear_decay, angular_decay, anisotropy;
-        Vec3T<F> inertia = M::load(motion, i, quad_inertia, linear_decay);
-        M::load(motion, i, quad_inverse, angular_decay);
+        F unused, linear_loss, angular_loss, anisotropy;
+        Vec3T<F> inertia = M::load(motion, i, quad_inertia, linear_loss);
+        M::load(motion, i, quad_inverse, angular_loss);
         Vec3T<F> L = M::load(motion, i, quad_L, anisotropy);
         Vec3T<F> dv = zero_vector<F>(), dw = dv, change_v, change_L;
         if (first_substep) {
@@ -107,7 +134,7 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, bool first_sub
             QuatT<F> dq;
             load_displacement<W>(bodies.state.data(), index, dp, dq);
             F q[4];
-            load4<W>(motion->q0, i, M::stride, 4 * quad_q0, q);
+            load4<W>(floats_of(motion), i, M::stride, 4 * quad_q0, q);
             QuatT<F> orientation = multiply(dq, QuatT<F>{q[0], q[1], q[2], q[3]});
             Vec3T<F> rv = x.v - M::load(motion, i, quad_v_ref, unused), rw = x.w - M::load(motion, i, quad_w_ref, unused);
             dv = M::load(motion, i, quad_dv, unused) + rv;
@@ -120,12 +147,21 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, bool first_sub
         M::store(motion, i, quad_L_start, L, splat<F>(0.0f));
         M::store(motion, i, quad_change_v, change_v, splat<F>(0.0f));
         M::store(motion, i, quad_change_L, change_L, splat<F>(0.0f));
-        F free;
-        Vec3T<F> acceleration = M::load(motion, i, quad_acceleration, free), torque = M::load(motion, i, quad_torque, unused);
-        L = angular_decay * L + splat<F>(k.h) * torque;
+        F free, joints, h = splat<F>(k.h);
+        Vec3T<F> acceleration = M::load(motion, i, quad_acceleration, free), torque = M::load(motion, i, quad_torque, joints);
+        if (k.joints) {
+            auto split = joint_mode(joints).split > splat<F>(0.0f);
+            h = select(split, splat<F>(0.5f) * h, h);
+            dv = select(split, zero_vector<F>(), dv);
+            dw = select(split, zero_vector<F>(), dw);
+            M::store(motion, i, quad_dv, dv, splat<F>(0.0f));
+            M::store(motion, i, quad_dw, dw, splat<F>(0.0f));
+        }
+        L = L - angular_loss * L + h * torque;
         SymMat3T<F> I = load_inverse_inertia<W>(bodies.inertia.data(), index);
-        x.v = select(movable, linear_decay * x.v + splat<F>(k.h) * acceleration, x.v);
-        x.w = select(movable, I * L, x.w);
+        x.v = x.v + select(movable, h * acceleration - linear_loss * (start.v + x.v), zero_vector<F>());
+        x.w = select(movable, I * L - start.w, x.w);
+        if (k.joints) store_gyro<W>(bodies, index, I, L, start.w + x.w);
         M::store(motion, i, quad_L, L, anisotropy);
         M::store(motion, i, quad_v_ref, x.v, splat<F>(0.0f));
         M::store(motion, i, quad_w_ref, x.w, splat<F>(0.0f));
@@ -153,12 +189,12 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
     for (int i = begin; i < end; i += W) {
         int32_t index[W];
         for (int l = 0; l < W; ++l) index[l] = i + l;
-        WideVelocity<F> x = load_velocity<W>(state, index);
+        WideVelocity<F> x = load_velocity<W>(state, index), start = load_start<W>(bodies.start.data(), index);
         Vec3T<F> dp;
         QuatT<F> dq;
         load_displacement<W>(state, index, dp, dq);
         F unused, anisotropy, free, q[4];
-        load4<W>(motion->q0, i, M::stride, 4 * quad_q0, q);
+        load4<W>(floats_of(motion), i, M::stride, 4 * quad_q0, q);
         QuatT<F> q0{q[0], q[1], q[2], q[3]};
         Vec3T<F> inertia = M::load(motion, i, quad_inertia, unused), inverse = M::load(motion, i, quad_inverse, unused);
         Vec3T<F> L = M::load(motion, i, quad_L, anisotropy);
@@ -172,18 +208,31 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
                                         M::load(motion, i, quad_change_v, unused), free);
         Vec3T<F> change_L = even_change(L - M::load(motion, i, quad_L_start, unused),
                                         M::load(motion, i, quad_change_L, unused), free);
-        dp = dp + splat<F>(k.h) * (x.v - half * change_v);
-        dq = turn_at_constant_L<W>(dq, q0, L - half * change_L, inverse, x.w, anisotropy, k.h);
+        JointMode<F> mode{};
+        if (k.joints) {
+            F joints;
+            M::load(motion, i, quad_torque, joints);
+            mode = joint_mode(joints);
+            change_v = select(mode.jointed > zero, zero_vector<F>(), change_v);
+            change_L = select(mode.jointed > zero, zero_vector<F>(), change_L);
+        }
+        dp = dp + splat<F>(k.h) * (start.v + (x.v - half * change_v));
+        dq = turn_at_constant_L<W>(dq, q0, L - half * change_L, inverse, start.w + x.w, anisotropy, k.h);
 
         SymMat3T<F> I = rotate_diagonal(rotation_matrix<F>(multiply(dq, q0), splat<F>(1.0f)), inverse);
-        x.w = select(x.inverse_mass > zero, I * L, x.w);
+        if (k.joints) {
+            F second = splat<F>(0.5f * k.h) * mode.split;
+            x.v = x.v + second * M::load(motion, i, quad_acceleration, unused);
+            L = L + second * M::load(motion, i, quad_torque, unused);
+        }
+        x.w = select(x.inverse_mass > zero, I * L - start.w, x.w);
         store_velocity<W>(state, index, x);
         F p[4] = {dp.x, dp.y, dp.z, zero}, r[4] = {dq.x, dq.y, dq.z, dq.w};
-        scatter4<W>(state->v, index, 16, 8, p);
-        scatter4<W>(state->v, index, 16, 12, r);
+        scatter4<W>(floats_of(state), index, 16, 8, p);
+        scatter4<W>(floats_of(state), index, 16, 12, r);
         F i0[4] = {I.xx, I.yy, I.zz, I.xy}, i1[4] = {I.xz, I.yz, zero, zero};
-        scatter4<W>(bodies.inertia.data()->inverse, index, 8, 0, i0);
-        scatter4<W>(bodies.inertia.data()->inverse, index, 8, 4, i1);
+        scatter4<W>(floats_of(bodies.inertia.data()), index, 8, 0, i0);
+        scatter4<W>(floats_of(bodies.inertia.data()), index, 8, 4, i1);
         M::store(motion, i, quad_L, L, anisotropy);
         M::store(motion, i, quad_v_ref, x.v, zero);
         M::store(motion, i, quad_w_ref, x.w, zero);
@@ -204,12 +253,48 @@ void settle_bodies(SolverBodies& bodies, int begin, int end) {
         QuatT<F> dq;
         load_displacement<W>(bodies.state.data(), index, dp, dq);
         F unused, anisotropy, q[4];
-        load4<W>(motion->q0, i, M::stride, 4 * quad_q0, q);
+        load4<W>(floats_of(motion), i, M::stride, 4 * quad_q0, q);
         Vec3T<F> inertia = M::load(motion, i, quad_inertia, unused), L = M::load(motion, i, quad_L, anisotropy);
         Vec3T<F> rw = x.w - M::load(motion, i, quad_w_ref, unused);
         L = L + apply_principal(multiply(dq, QuatT<F>{q[0], q[1], q[2], q[3]}), inertia, rw);
         M::store(motion, i, quad_L, L, anisotropy);
         M::store(motion, i, quad_change_v, x.v - M::load(motion, i, quad_v_start, unused), splat<F>(0.0f));
         M::store(motion, i, quad_change_L, L - M::load(motion, i, quad_L_start, unused), splat<F>(0.0f));
+    }
+}
+
+// See Booking.
+template <int W>
+void book_joints(SolverBodies& bodies, Booking what, int begin, int end) {
+    using F = Wide<float, W>;
+    using M = MotionBlock<W>;
+    const F zero = splat<F>(0.0f);
+    BodyMotion* motion = bodies.motion.data();
+    for (int i = begin; i < end; i += W) {
+        int32_t index[W];
+        for (int l = 0; l < W; ++l) index[l] = i + l;
+        F joints, unused, anisotropy, q[4];
+        M::load(motion, i, quad_torque, joints);
+        auto jointed = joint_mode(joints).jointed > zero;
+        WideVelocity<F> x = load_velocity<W>(bodies.state.data(), index);
+        Vec3T<F> v = M::load(motion, i, quad_v_ref, unused), w = M::load(motion, i, quad_w_ref, unused);
+        Vec3T<F> added_v = select(jointed, x.v - v, zero_vector<F>()), added_w = select(jointed, x.w - w, zero_vector<F>());
+        if (what == Booking::contacts_warm) {
+            M::store(motion, i, quad_dv, added_v, zero);
+            M::store(motion, i, quad_dw, added_w, zero);
+            continue;
+        }
+        if (what == Booking::joints_solved) {
+            added_v = select(jointed, added_v - M::load(motion, i, quad_dv, unused), zero_vector<F>());
+            added_w = select(jointed, added_w - M::load(motion, i, quad_dw, unused), zero_vector<F>());
+        }
+        Vec3T<F> dp, inertia = M::load(motion, i, quad_inertia, unused), L = M::load(motion, i, quad_L, anisotropy);
+        QuatT<F> dq;
+        load_displacement<W>(bodies.state.data(), index, dp, dq);
+        load4<W>(floats_of(motion), i, M::stride, 4 * quad_q0, q);
+        L = L + apply_principal(multiply(dq, QuatT<F>{q[0], q[1], q[2], q[3]}), inertia, added_w);
+        M::store(motion, i, quad_L, L, anisotropy);
+        M::store(motion, i, quad_v_ref, v + added_v, zero);
+        M::store(motion, i, quad_w_ref, w + added_w, zero);
     }
 }

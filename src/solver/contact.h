@@ -14,25 +14,25 @@ struct ContactPointRecord {
 };
 
 struct alignas(64) ContactRecord {
-    float normal[3];           // unit, from A to B
+    float normal[3];  // unit, from A to B
     float static_friction;
-    float normal_impulse[4];   // of the last substep, N s
-    float friction_impulse[3]; // on B at the centre of the points, world axes, N s
-    float twist_impulse;       // on B about the normal, N m s
-    int32_t body_a, body_b;    // solver bodies; where only one of them is moved by constraints, it is B
+    float normal_impulse[4];    // of the last substep, N s
+    float friction_impulse[3];  // on B at the centre of the points, world axes, N s
+    float twist_impulse;        // on B about the normal, N m s
+    int32_t body_a, body_b;     // solver bodies; where only one of them is moved by constraints, it is B
     int32_t point_count;
     float dynamic_friction;
     ContactPointRecord points[4];
     float radius_a, radius_b;  // sweep radii of the surfaces at the points, see Manifold
     float follow;              // on which body the points ride, see Manifold
     float restitution;
-    float arm_offset[3];       // B's centre of mass minus A's, m
-    float separation_speed;    // fastest that overlap is undone, m/s
-    uint32_t id[4];            // feature names of the points
-    uint32_t key;              // name among the manifolds of the pair
+    float arm_offset[3];     // B's centre of mass minus A's, m
+    float separation_speed;  // fastest that overlap is undone, m/s
+    uint32_t id[4];          // feature names of the points
+    uint32_t key;            // name among the manifolds of the pair
     int32_t triangle;
     uint32_t flags;
-    uint32_t pair;             // index of the pair in this step's pair list
+    uint32_t pair;  // index of the pair in this step's pair list
 };
 static_assert(sizeof(ContactRecord) == 192);
 

@@ -32,6 +32,13 @@ struct alignas(64) ContactRow {
     F bounce_speed;      // approach speed from which the impact stage alone handles the point; huge where e = 0
 };
 
+struct BodyArrays {
+    BodyState* state;
+    const BodyInertia* inertia;
+    const BodyStart* start;
+};
+
+// Changes of velocity since the start of the step, or the velocities then.
 template <class F>
 struct WideVelocity {
     Vec3T<F> v, w;
@@ -41,29 +48,36 @@ struct WideVelocity {
 template <int W>
 LENDULET_FORCE_INLINE WideVelocity<Wide<float, W>> load_velocity(const BodyState* s, const int32_t* i) {
     Wide<float, W> p[4], q[4];
-    gather4<W>(s->v, i, 16, 0, p);
-    gather4<W>(s->v, i, 16, 4, q);
+    gather4<W>(floats_of(s), i, 16, 0, p);
+    gather4<W>(floats_of(s), i, 16, 4, q);
     return {{p[0], p[1], p[2]}, {q[0], q[1], q[2]}, p[3], q[3]};
 }
 template <int W>
 LENDULET_FORCE_INLINE void store_velocity(BodyState* s, const int32_t* i, const WideVelocity<Wide<float, W>>& x) {
     Wide<float, W> p[4] = {x.v.x, x.v.y, x.v.z, x.inverse_mass}, q[4] = {x.w.x, x.w.y, x.w.z, x.unused};
-    scatter4<W>(s->v, i, 16, 0, p);
-    scatter4<W>(s->v, i, 16, 4, q);
+    scatter4<W>(floats_of(s), i, 16, 0, p);
+    scatter4<W>(floats_of(s), i, 16, 4, q);
+}
+template <int W>
+LENDULET_FORCE_INLINE WideVelocity<Wide<float, W>> load_start(const BodyStart* s, const int32_t* i) {
+    Wide<float, W> p[4], q[4];
+    gather4<W>(floats_of(s), i, 8, 0, p);
+    gather4<W>(floats_of(s), i, 8, 4, q);
+    return {{p[0], p[1], p[2]}, {q[0], q[1], q[2]}, p[3], q[3]};
 }
 template <int W>
 LENDULET_FORCE_INLINE SymMat3T<Wide<float, W>> load_inverse_inertia(const BodyInertia* s, const int32_t* i) {
     Wide<float, W> p[4], q[4];
-    gather4<W>(s->inverse, i, 8, 0, p);
-    gather4<W>(s->inverse, i, 8, 4, q);
+    gather4<W>(floats_of(s), i, 8, 0, p);
+    gather4<W>(floats_of(s), i, 8, 4, q);
     return {p[0], p[1], p[2], p[3], q[0], q[1]};
 }
 template <int W>
 LENDULET_FORCE_INLINE void load_displacement(const BodyState* s, const int32_t* i, Vec3T<Wide<float, W>>& dp,
                                              QuatT<Wide<float, W>>& dq) {
     Wide<float, W> p[4], q[4];
-    gather4<W>(s->v, i, 16, 8, p);
-    gather4<W>(s->v, i, 16, 12, q);
+    gather4<W>(floats_of(s), i, 16, 8, p);
+    gather4<W>(floats_of(s), i, 16, 12, q);
     dp = {p[0], p[1], p[2]};
     dq = {q[0], q[1], q[2], q[3]};
 }
@@ -137,7 +151,7 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
         c.a[l] = l < live ? records[index[l]].body_a : group.filler;
         c.b[l] = l < live ? records[index[l]].body_b : group.filler;
     }
-    const float* base = records->normal;
+    const float* base = floats_of(records);
     constexpr int stride = sizeof(ContactRecord) / sizeof(float);
     F normal[4], impulse[4], friction[4], ints[4], surface[4], offset[4], point[P][4];
     gather4<W>(base, index, stride, 0, normal);
@@ -206,7 +220,7 @@ void prepare_rows(const ContactGroup& g, const ContactRecord* records, const Sol
 
 // --- the passes
 
-enum class Pass { warm_start, solve, solve_moved, relax };
+enum class Pass { warm_start, solve, relax };
 
 // Friction of the whole patch as one block (t1, t2, twist), limited by the round Coulomb cone on the total normal
 // impulse: it sticks while the impulse that stops the sliding is within the static cone, and slides with the dynamic
@@ -248,7 +262,7 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
 }
 
 // Separations since the start of the step, from the two bodies' displacements.
-template <int W, int P, bool fixed_a>
+template <int W, int P>
 LENDULET_FORCE_INLINE void update_displacement(ContactRow<W, P>& c, const BodyState* states) {
     using F = Wide<float, W>;
     Vec3T<F> dpa, dpb;
@@ -265,15 +279,19 @@ LENDULET_FORCE_INLINE void update_displacement(ContactRow<W, P>& c, const BodySt
     }
 }
 
-template <int W, int P, bool fixed_a, Pass pass>
-LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, BodyState* states, const BodyInertia* inertias,
-                                        const SubstepConstants& k) {
+// `fixed_a` (A is not moved by constraints) and k.moved are the same for all rows of a loop: branches cost nothing here,
+// copies of the kernel would only take longer to build.
+template <int W, int P, Pass pass>
+LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& bodies, const SubstepConstants& k,
+                                        bool fixed_a) {
     using F = Wide<float, W>;
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
+    BodyState* states = bodies.state;
     WideVelocity<F> A = load_velocity<W>(states, c.a), B = load_velocity<W>(states, c.b);
-    SymMat3T<F> IA{}, IB = load_inverse_inertia<W>(inertias, c.b);
-    if constexpr (!fixed_a) IA = load_inverse_inertia<W>(inertias, c.a);
-    if constexpr (pass == Pass::relax || pass == Pass::solve_moved) update_displacement<W, P, fixed_a>(c, states);
+    SymMat3T<F> IA{}, IB = load_inverse_inertia<W>(bodies.inertia, c.b);
+    if (!fixed_a) IA = load_inverse_inertia<W>(bodies.inertia, c.a);
+    WideVelocity<F> A0 = load_start<W>(bodies.start, c.a), B0 = load_start<W>(bodies.start, c.b);
+    if (pass == Pass::relax || (pass == Pass::solve && k.moved)) update_displacement<W, P>(c, states);
 
     Vec3T<F> t2 = cross(c.n, c.t1);
     Vec3T<F> ra = c.ra + c.follow * c.moved, rb = c.rb - (one - c.follow) * c.moved;
@@ -286,8 +304,8 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, BodyState* states, 
         F inverse_h = splat<F>(k.inverse_h), keep = splat<F>(biased ? 1.0f - k.leak : 1.0f);
         F rate = splat<F>(biased ? k.bias_rate : 0.0f), push = zero - c.push_speed;
         F bounce = splat<F>(k.bounce_speed) * c.bounce_speed;
-        Vec3T<F> spin = B.w - A.w;
-        F g0 = dot(c.n, B.v - A.v) + dot(aB, B.w) - dot(aA, A.w);
+        Vec3T<F> wa = A0.w + A.w, wb = B0.w + B.w, spin = wb - wa;
+        F g0 = dot(c.n, (B0.v - A0.v) + (B.v - A.v)) + (dot(aB, wb) - dot(aA, wa));
         F g1 = zero - dot(spin, t2), g2 = dot(spin, c.t1);
         for (int j = 0; j < P; ++j) {
             auto& p = c.p[j];
@@ -321,39 +339,33 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, BodyState* states, 
     Vec3T<F> push = total * c.n;
     B.v = B.v + B.inverse_mass * push;
     B.w = B.w + IB * (total * aB + turn);
-    if constexpr (!fixed_a) {
-        A.v = A.v - A.inverse_mass * push;
-        A.w = A.w - IA * (total * aA + turn);
-    }
+    A.v = A.v - A.inverse_mass * push;
+    A.w = A.w - IA * (total * aA + turn);
     if constexpr (pass == Pass::relax || pass == Pass::warm_start) {
         Vec3T<F> linear, angular;
         if constexpr (pass == Pass::relax) {
-            Vec3T<F> slip = (B.v + cross(B.w, rb)) - (A.v + cross(A.w, ra));
-            solve_friction<W, P>(c, t2, slip, dot(c.n, B.w - A.w), linear, angular);
+            Vec3T<F> wa = A0.w + A.w, wb = B0.w + B.w;
+            Vec3T<F> slip = ((B0.v - A0.v) + (B.v - A.v)) + (cross(wb, rb) - cross(wa, ra));
+            solve_friction<W, P>(c, t2, slip, dot(c.n, wb - wa), linear, angular);
         } else {
             linear = c.tangent[0] * c.t1 + c.tangent[1] * t2;
             angular = c.twist * c.n;
         }
         B.v = B.v + B.inverse_mass * linear;
         B.w = B.w + IB * (cross(rb, linear) + angular);
-        if constexpr (!fixed_a) {
-            A.v = A.v - A.inverse_mass * linear;
-            A.w = A.w - IA * (cross(ra, linear) + angular);
-        }
+        A.v = A.v - A.inverse_mass * linear;
+        A.w = A.w - IA * (cross(ra, linear) + angular);
     }
     store_velocity<W>(states, c.b, B);
-    if constexpr (!fixed_a) store_velocity<W>(states, c.a, A);
+    if (!fixed_a) store_velocity<W>(states, c.a, A);
 }
 
 template <int W, int P, Pass pass>
 void run_pass(const ContactGroup& g, SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
     auto* rows = reinterpret_cast<ContactRow<W, P>*>(g.rows);
-    BodyState* states = bodies.state.data();
-    const BodyInertia* inertias = bodies.inertia.data();
-    if (g.fixed_a)
-        for (int i = begin; i < end; ++i) contact_pass<W, P, true, pass>(rows[i], states, inertias, k);
-    else
-        for (int i = begin; i < end; ++i) contact_pass<W, P, false, pass>(rows[i], states, inertias, k);
+    const BodyArrays arrays{bodies.state.data(), bodies.inertia.data(), bodies.start.data()};
+    for (int i = begin; i < end; ++i)
+        contact_pass<W, P, pass>(rows[i], arrays, k, g.fixed_a);
 }
 
 // --- and back

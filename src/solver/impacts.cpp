@@ -10,20 +10,21 @@ constexpr int max_sweeps = 8;
 constexpr float touching = 1e-6f;
 
 Vec3 load(const float* p) { return {p[0], p[1], p[2]}; }
-void store(float* p, Vec3 v) { p[0] = v.x, p[1] = v.y, p[2] = v.z; }
 void add(float* p, Vec3 v) { p[0] += v.x, p[1] += v.y, p[2] += v.z; }
 
 struct Side {
     BodyState* state;
     BodyMotion* motion;
     SymMat3 inverse_inertia;
-    Vec3 v, w, arm;
+    Vec3 v, w, arm;  // whole velocities
 
-    Side(SolverBodies& bodies, int32_t i) : state(&bodies.state[i]), motion(&bodies.motion[i]) {
-        const float* m = bodies.inertia[i].inverse;
+    Side(SolverBodies& bodies, int32_t i)
+        : state(&bodies.state[static_cast<size_t>(i)]), motion(&bodies.motion[static_cast<size_t>(i)]) {
+        const float* m = bodies.inertia[static_cast<size_t>(i)].inverse;
         inverse_inertia = {m[0], m[1], m[2], m[3], m[4], m[5]};
-        v = load(state->v);
-        w = load(state->w);
+        const BodyStart& start = bodies.start[static_cast<size_t>(i)];
+        v = load(start.v) + load(state->v);
+        w = load(start.w) + load(state->w);
     }
     Quat rotation() const { return {state->dq[0], state->dq[1], state->dq[2], state->dq[3]}; }
     bool movable() const { return state->inverse_mass > 0.0f; }
@@ -40,8 +41,8 @@ struct Side {
         Vec3 dv = state->inverse_mass * impulse, dL = cross(arm, impulse), dw = inverse_inertia * dL;
         v += dv;
         w += dw;
-        store(state->v, v);
-        store(state->w, w);
+        add(state->v, dv);
+        add(state->w, dw);
         // Not a change that the warm start repeats, nor one that the drift expects to go on.
         add(motion->v_ref, dv);
         add(motion->v_start, dv);
@@ -57,7 +58,8 @@ struct Side {
 };
 
 // One point of a manifold; true where it bounced.
-bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPointRecord& point, const SubstepConstants& k) {
+bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPointRecord& point,
+                  const SubstepConstants& k) {
     Side a(bodies, r.body_a), b(bodies, r.body_b);
     Vec3 n = load(r.normal), ra0 = load(point.position), offset = load(r.arm_offset), rb0 = ra0 - offset;
     float half_gap = 0.5f * point.separation;
@@ -66,13 +68,15 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
     Vec3 moved = load(b.state->dp) - load(a.state->dp);
     Vec3 turned = (rotate(b.rotation(), core_b) - core_b) - (rotate(a.rotation(), core_a) - core_a);
     float gap = maximum(point.separation + dot(n, moved + turned), 0.0f);
-    // The world point where both get the impulse, on the surface of the body that it rides on.
-    Vec3 slid = moved - dot(moved, n) * n;
-    b.arm = rb0 + half_gap * n - (1.0f - r.follow) * slid;
-    a.arm = b.arm + offset + moved - gap * n;
-
-    Vec3 relative = b.velocity() - a.velocity();
-    float approach = dot(relative, n), acceleration = dot(b.acceleration() - a.acceleration(), n);
+    // Both get the impulse at the same world point at the time of impact, on the surface of the body that it rides on.
+    Vec3 drift = b.v - a.v;
+    auto place_arms = [&](float time) {
+        Vec3 shift = moved + time * drift, slid = shift - dot(shift, n) * n;
+        b.arm = rb0 + half_gap * n - (1.0f - r.follow) * slid;
+        a.arm = b.arm + offset + shift;
+    };
+    place_arms(0.0f);
+    float approach = dot(b.velocity() - a.velocity(), n), acceleration = dot(b.acceleration() - a.acceleration(), n);
     // gap + approach t + acceleration t^2 / 2 = 0, the earlier root; stable form.
     float discriminant = approach * approach - 2.0f * acceleration * gap;
     if (!(discriminant > 0.0f)) return false;
@@ -85,15 +89,18 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
         return false;
     }
     if (time > k.h || speed < k.bounce_speed) return false;
+    place_arms(time);
+    Vec3 relative = b.velocity() - a.velocity();
 
     float normal_impulse = (1.0f + r.restitution) * speed / (a.effectiveness(n) + b.effectiveness(n));
-    Vec3 impulse = normal_impulse * n, slip = relative - approach * n;
+    Vec3 impulse = normal_impulse * n, slip = relative - dot(relative, n) * n;
     float slide = length(slip);
     if (slide > 1e-9f) {
         Vec3 u = (1.0f / slide) * slip;
         float stopping = slide / (a.effectiveness(u) + b.effectiveness(u));
         // Static and sliding friction on the whole normal impulse (thesis 3.3.4, magnitudes as in THESIS-NOTES).
-        float friction = stopping <= r.static_friction * normal_impulse ? stopping : r.dynamic_friction * normal_impulse;
+        float friction =
+            stopping <= r.static_friction * normal_impulse ? stopping : r.dynamic_friction * normal_impulse;
         impulse -= friction * u;
     }
     a.apply(-impulse, time);

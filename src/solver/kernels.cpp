@@ -8,7 +8,10 @@ extern const SolverKernels baseline_kernels_1, baseline_kernels_4, baseline_kern
 extern const SolverKernels avx2_kernels, avx512_kernels;
 namespace {
 bool has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"); }
-bool has_avx512() { return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"); }
+bool has_avx512() {
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl");
+}
 }  // namespace
 
 int native_width() { return has_avx512() ? 16 : has_avx2() ? 8 : 4; }
@@ -22,7 +25,10 @@ const SolverKernels& solver_kernels(int width) {
 int native_width() { return 4; }
 
 const SolverKernels& solver_kernels(int width) {
-    return width == 16 ? baseline_kernels_16 : width == 8 ? baseline_kernels_8 : width == 4 ? baseline_kernels_4 : baseline_kernels_1;
+    return width == 16  ? baseline_kernels_16
+           : width == 8 ? baseline_kernels_8
+           : width == 4 ? baseline_kernels_4
+                        : baseline_kernels_1;
 }
 #endif
 

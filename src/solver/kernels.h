@@ -1,6 +1,6 @@
 // The wide kernels of the solver as a table of functions, one table a SIMD width. One source (kernels.inl) is compiled
-// once per instruction set; the table is chosen when a world is built. All widths give the same bits: constraints of one
-// colour share no body, so how they are packed into lanes cannot matter.
+// once per instruction set; the table is chosen when a world is built. All widths give the same bits: constraints of
+// one colour share no body, so how they are packed into lanes cannot matter.
 #pragma once
 
 #include <cstddef>
@@ -8,37 +8,66 @@
 
 #include "solver/bodies.h"
 #include "solver/contact.h"
+#include "solver/joint.h"
 
 namespace lendulet {
 
 struct SubstepConstants {
-    float h;              // substep, s
+    float h;  // substep, s
     float inverse_h;
-    float bias_rate;      // share of the overlap undone in a substep, divided by h
-    float leak;           // share of the accumulated normal impulse given up in the biased pass
-    float bounce_speed;   // slower impacts do not bounce, m/s
+    float bias_rate;     // share of the overlap undone in a substep, divided by h
+    float leak;          // share of the accumulated normal impulse given up in the biased pass
+    float bounce_speed;  // slower impacts do not bounce, m/s
+    bool joints;         // whether there are any
+    bool moved;          // bodies were displaced since the last relax or prepare: impacts shift them
 };
 
 // Manifolds of one colour and one size class: `count` of them, named by `order`, in rows from `rows` on.
 struct ContactGroup {
-    int points;            // rows have room for 1, 2 or 4
-    bool fixed_a;          // A is static or kinematic in all of them: not stored
-    int32_t filler;        // reserved body for the empty lanes of the last block
+    int points;      // rows have room for 1, 2 or 4
+    bool fixed_a;    // A is static or kinematic in all of them: not stored
+    int32_t filler;  // reserved body for the empty lanes of the last block
     int count;
-    const uint32_t* order; // indices of the records
+    const uint32_t* order;  // indices of the records
     std::byte* rows;
+};
+
+// Joints of one colour, one class and the same moved sides.
+struct JointGroup {
+    JointClass type;
+    bool moved_a, moved_b;  // the other side is static or kinematic: not stored
+    int32_t filler;
+    int count;
+    const uint32_t* order;  // indices of the records
+    std::byte* rows;
+};
+
+// Joints of one class: blocks [begin, end) of a group.
+struct JointKernels {
+    using Pass = void (*)(const JointGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
+    size_t row_bytes;  // of one block
+    void (*prepare)(const JointGroup&, const JointRecord*, const SolverBodies&, int begin, int end);
+    Pass warm_start, solve;  // before the drift
+    Pass warm_relax, relax;  // after it
+    void (*store)(const JointGroup&, JointRecord*, int begin, int end);
+};
+
+// What is booked for bodies with joints: what joints just added to the velocities becomes part of the motion, so that
+// contacts alone account for the rest, which their warm start repeats.
+enum class Booking {
+    contacts_warm,   // what differs from the booked velocities is the contacts' warm start
+    joints_solved,   // joints added to that
+    joints_relaxed,  // joints alone added to the booked velocities
 };
 
 struct SolverKernels {
     int width;
-    size_t row_bytes[3];   // of one block of `width` manifolds with 1, 2, 4 points
+    size_t row_bytes[3];  // of one block of `width` manifolds with 1, 2, 4 points
 
     // Contacts: blocks [begin, end) of a group.
     void (*prepare)(const ContactGroup&, const ContactRecord*, const SolverBodies&, int begin, int end);
     void (*warm_start)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*solve)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
-    // As solve, where bodies were displaced since the last relax or prepare.
-    void (*solve_moved)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*relax)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*store)(const ContactGroup&, ContactRecord*, int begin, int end);
 
@@ -46,6 +75,9 @@ struct SolverKernels {
     void (*kick)(SolverBodies&, const SubstepConstants&, bool first, int begin, int end);
     void (*drift)(SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*settle)(SolverBodies&, int begin, int end);
+    void (*book_joints)(SolverBodies&, Booking what, int begin, int end);
+
+    JointKernels joints[joint_classes];
 };
 
 inline int row_class(int points) { return points > 2 ? 2 : points - 1; }

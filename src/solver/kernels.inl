@@ -1,6 +1,9 @@
-// The one source of all wide kernels. Included by one unit per instruction set, which defines LENDULET_KERNEL_SPACE: the
-// namespace that keeps the copies apart, so that the linker can never give a unit the code of a wider machine.
+// The one source of all wide kernels. Included by one unit per instruction set, which defines LENDULET_KERNEL_SPACE:
+// the namespace that keeps the copies apart, so that the linker can never give a unit the code of a wider machine.
+#include <type_traits>
+
 #include "math/wide/gather.h"
+#include "math/wide/trigonometry.h"
 #include "math/wide/wide.h"
 #include "solver/kernels.h"
 
@@ -11,8 +14,15 @@ namespace {
 
 #include "solver/body_rows.inl"
 
+#include "solver/joint_block.inl"
+
+#include "solver/joint_rows.inl"
+
+#include "solver/joint_passes.inl"
+
 template <int W>
-void prepare_group(const ContactGroup& g, const ContactRecord* records, const SolverBodies& bodies, int begin, int end) {
+void prepare_group(const ContactGroup& g, const ContactRecord* records, const SolverBodies& bodies, int begin,
+                   int end) {
     if (g.points == 1) prepare_rows<W, 1>(g, records, bodies, begin, end);
     else if (g.points == 2) prepare_rows<W, 2>(g, records, bodies, begin, end);
     else prepare_rows<W, 4>(g, records, bodies, begin, end);
@@ -30,6 +40,17 @@ void store_group(const ContactGroup& g, ContactRecord* records, int begin, int e
     else store_rows<W, 4>(g, records, begin, end);
 }
 
+template <int W, JointClass C>
+constexpr JointKernels make_joint_kernels() {
+    return {sizeof(JointRow<W, C>),
+            prepare_joints<W, C>,
+            run_joints<W, C, JointPass::warm_start>,
+            run_joints<W, C, JointPass::solve>,
+            run_joints<W, C, JointPass::warm_relax>,
+            run_joints<W, C, JointPass::relax>,
+            store_joints<W, C>};
+}
+
 template <int W>
 constexpr SolverKernels make_kernels() {
     return {W,
@@ -37,12 +58,15 @@ constexpr SolverKernels make_kernels() {
             prepare_group<W>,
             pass_group<W, Pass::warm_start>,
             pass_group<W, Pass::solve>,
-            pass_group<W, Pass::solve_moved>,
             pass_group<W, Pass::relax>,
             store_group<W>,
             kick_bodies<W>,
             drift_bodies<W>,
-            settle_bodies<W>};
+            settle_bodies<W>,
+            book_joints<W>,
+            {make_joint_kernels<W, JointClass::ball>(), make_joint_kernels<W, JointClass::limited_ball>(),
+             make_joint_kernels<W, JointClass::hinge>(), make_joint_kernels<W, JointClass::driven_hinge>(),
+             make_joint_kernels<W, JointClass::slider>(), make_joint_kernels<W, JointClass::fixed>()}};
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 namespace lendulet {
 namespace {
 
-constexpr int bodies_per_task = 256;   // bodies in a chunk of a parallel loop; a multiple of 16
-constexpr int contacts_per_task = 128; // manifolds in a chunk, whatever the width
+constexpr int bodies_per_task = 256;    // bodies in a chunk of a parallel loop; a multiple of 16
+constexpr int contacts_per_task = 128;  // manifolds in a chunk, whatever the width
 
 // Calls run(begin, end) on ranges of bodies, aligned to blocks of 16.
 template <class Run>
@@ -24,6 +24,7 @@ SubstepConstants substep_constants(const SolverSettings& settings) {
     k.bias_rate = contact_bias * k.inverse_h;
     k.leak = contact_leak;
     k.bounce_speed = bounce_threshold_substeps * settings.gravity * k.h + 1e-3f;
+    k.joints = k.moved = false;
     return k;
 }
 
@@ -52,20 +53,32 @@ void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord*
     });
 }
 
-void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records) {
-    const SubstepConstants k = substep_constants(settings);
+void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointRecord* joints, int count,
+                            ContactList contacts) {
+    joints_.prepare(tasks, bodies, joints, count, contacts, kernels_, scalar_);
+}
+
+void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies,
+                   const ContactRecord* records) {
+    SubstepConstants k = substep_constants(settings);
+    k.joints = !joints_.empty();
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const bool first = substep == 0;
-        bool moved = resolve_impacts(bodies, records, bouncing_.data(), bouncing_.count(), k);
+        k.moved = resolve_impacts(bodies, records, bouncing_.data(), bouncing_.count(), k);
         for_each_body_block(tasks, bodies, [&](int begin, int end) { kernels_.kick(bodies, k, first, begin, end); });
         if (first)
             for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
                 kernels.warm_start(g, bodies, k, begin, end);
             });
+        if (k.joints) {
+            if (first) joints_.after_contact_warm_start(tasks, bodies);
+            joints_.biased(tasks, bodies, k);
+        }
         for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
-            (moved ? kernels.solve_moved : kernels.solve)(g, bodies, k, begin, end);
+            kernels.solve(g, bodies, k, begin, end);
         });
         for_each_body_block(tasks, bodies, [&](int begin, int end) { kernels_.drift(bodies, k, begin, end); });
+        if (k.joints) joints_.relax(tasks, bodies, k);
         for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
             kernels.relax(g, bodies, k, begin, end);
         });

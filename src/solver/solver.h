@@ -1,9 +1,9 @@
 // One step of all awake bodies, contacts and joints: substeps of impacts, kick, biased solve, drift and relax.
 //
-// The scheme is a substepped soft Gauss-Seidel ("leaky TGS"): a biased pass undoes a share of the overlap and gives up a
-// share of the accumulated impulse (which damps slow modes), a relax pass without bias makes the velocities right again
-// and alone carries friction. Sources: Macklin et al., "Small Steps in Physics Simulation" (SCA 2019); Catto, "Solver2D"
-// (2024); the leak and its stiffness are ours, see docs/solver.md.
+// The scheme is a substepped soft Gauss-Seidel ("leaky TGS"): a biased pass undoes a share of the overlap and gives up
+// a share of the accumulated impulse (which damps slow modes), a relax pass without bias makes the velocities right
+// again and alone carries friction. Sources: Macklin et al., "Small Steps in Physics Simulation" (SCA 2019); Catto,
+// "Solver2D" (2024); the leak and its stiffness are ours, see docs/solver.md.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 #include "solver/bodies.h"
 #include "solver/colouring.h"
 #include "solver/contact.h"
+#include "solver/joint_solver.h"
 #include "solver/kernels.h"
 
 namespace lendulet {
@@ -20,11 +21,12 @@ namespace lendulet {
 struct SolverSettings {
     float dt;
     int substeps;
-    float gravity;       // magnitude, for the bounce threshold, m/s^2
+    float gravity;  // magnitude, for the bounce threshold, m/s^2
 };
 
-// Share of the overlap that a biased pass undoes in one substep, and of the impulse that it gives up. A stack of n equal
-// boxes sinks by (leak / bias) g h^2 n per face, and stands up to a height of about (0.98 bias / (leak g h^2))^(1/3).
+// Share of the overlap that a biased pass undoes in one substep, and of the impulse that it gives up. A stack of n
+// equal boxes sinks by (leak / bias) g h^2 n per face, and stands up to a height of about (0.98 bias / (leak g
+// h^2))^(1/3).
 inline constexpr float contact_bias = 0.1f;
 inline constexpr float contact_leak = 0.1f;
 // Impacts slower than this many times |g| h do not bounce: less than a substep's fall cannot be told from rest.
@@ -35,17 +37,27 @@ SubstepConstants substep_constants(const SolverSettings& settings);
 class Solver {
 public:
     Solver(const Memory* memory, int width)
-        : schedule_(memory), bouncing_(memory), kernels_(solver_kernels(width)), scalar_(solver_kernels(1)) {}
+        : schedule_(memory),
+          bouncing_(memory),
+          joints_(memory),
+          kernels_(solver_kernels(width)),
+          scalar_(solver_kernels(1)) {}
 
     // Colours the manifolds that `list` names and packs them into rows.
     void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, const uint32_t* list, int count);
+    // Colours the joints and packs them; after prepare() and with the same contacts, in every step. `joints` must stay
+    // until store_joints().
+    void prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointRecord* joints, int count, ContactList contacts);
     // Runs the substeps; bodies move.
     void solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records);
     // Writes impulses and final separations back.
     void store(TaskPool& tasks, ContactRecord* records);
+    // Writes impulses back into the joints given to prepare_joints().
+    void store_joints(TaskPool& tasks) { joints_.store(tasks); }
 
     int colour_count() const { return schedule_.colour_count(); }
     int overflow() const { return schedule_.overflow; }
+    const JointSolver& joints() const { return joints_; }
     size_t row_bytes() const { return schedule_.rows.size(); }
 
 private:
@@ -55,6 +67,7 @@ private:
 
     ColourSchedule schedule_;
     Array<uint32_t> bouncing_;  // records that can bounce
+    JointSolver joints_;
     const SolverKernels& kernels_;
     const SolverKernels& scalar_;
 };

@@ -18,7 +18,9 @@ struct CheckedCollider {
     Surface surface;
 };
 
-Error refused(ErrorCode code, const char* call, std::string what) { return {code, std::string(call) + ": " + std::move(what)}; }
+Error refused(ErrorCode code, const char* call, std::string what) {
+    return {code, std::string(call) + ": " + std::move(what)};
+}
 
 Result<float> coefficient(std::optional<float> given, float fallback, float most, const char* what, const char* call) {
     float value = given.value_or(fallback);
@@ -31,7 +33,8 @@ Result<float> coefficient(std::optional<float> given, float fallback, float most
 Result<Surface> make_surface(const WorldConfig& config, const Material& m, const char* call) {
     Result<float> fixed = coefficient(m.static_friction, config.friction, 1e6f, "static friction", call);
     if (!fixed) return fixed.error();
-    Result<float> sliding = coefficient(m.dynamic_friction, m.static_friction.value_or(config.friction), 1e6f, "dynamic friction", call);
+    Result<float> sliding =
+        coefficient(m.dynamic_friction, m.static_friction.value_or(config.friction), 1e6f, "dynamic friction", call);
     if (!sliding) return sliding.error();
     Result<float> bounce = coefficient(m.restitution, config.restitution, 1.0f, "restitution", call);
     if (!bounce) return bounce.error();
@@ -56,7 +59,8 @@ Result<CheckedCollider> check_collider(WorldData& world, const ColliderDef& def,
         return refused(ErrorCode::shape_not_dynamic, call, "a plane cannot be on a moving body");
     if (moves && c.geometry.kind == GeometryKind::mesh) {
         if (!c.geometry.hull)
-            return refused(ErrorCode::shape_not_dynamic, call, "a flat mesh has no hull to collide as on a moving body");
+            return refused(ErrorCode::shape_not_dynamic, call,
+                           "a flat mesh has no hull to collide as on a moving body");
         c.geometry.kind = GeometryKind::hull;
         c.geometry.mesh = nullptr;
     }
@@ -77,29 +81,33 @@ std::vector<ColliderDef> colliders_of(const Def& def, float density) {
     return {one};
 }
 
-Result<MassProperties> body_mass(const RigidBodyDef& def, const std::vector<CheckedCollider>& colliders, const char* call) {
-    MassProperties total{};
-    for (const CheckedCollider& c : colliders) {
-        if (c.def.is_trigger) continue;
-        total = combine(total, transformed(mass_properties(c.def.shape, c.def.density), c.def.local));
-    }
+Result<MassProperties> body_mass(const RigidBodyDef& def, const std::vector<CheckedCollider>& colliders,
+                                 const char* call) {
+    std::vector<MassProperties> parts;
+    for (const CheckedCollider& c : colliders)
+        if (!c.def.is_trigger) parts.push_back(placed(mass_properties(c.geometry, c.def.density), c.def.local));
+    MassProperties total = combined(parts);
     if (def.mass) {
         if (!is_finite(*def.mass) || !(*def.mass > 0.0f))
             return refused(ErrorCode::bad_mass, call, "mass is " + text(*def.mass) + ", must be positive");
-        float scale = total.mass > 0.0f ? *def.mass / total.mass : 0.0f;
-        SymMat3& i = total.inertia;
-        i = {scale * i.xx, scale * i.yy, scale * i.zz, scale * i.xy, scale * i.xz, scale * i.yz};
-        total.mass = *def.mass;
+        total = with_mass(total, *def.mass);
     }
     if (def.centre_of_mass) {
-        if (!is_finite(*def.centre_of_mass)) return refused(ErrorCode::non_finite, call, "centre of mass must be finite");
-        if (!def.inertia) total = about(total, *def.centre_of_mass);
+        if (!is_finite(*def.centre_of_mass))
+            return refused(ErrorCode::non_finite, call, "centre of mass must be finite");
+        // The same solid on another centre: its inertia about that follows by the parallel axis theorem.
+        Vec3 d = *def.centre_of_mass - total.centre;
+        SymMat3& i = total.inertia;
+        float m = total.mass, d2 = dot(d, d);
+        i = {i.xx + m * (d2 - d.x * d.x), i.yy + m * (d2 - d.y * d.y), i.zz + m * (d2 - d.z * d.z),
+             i.xy - m * d.x * d.y,        i.xz - m * d.x * d.z,        i.yz - m * d.y * d.z};
         total.centre = *def.centre_of_mass;
     }
     if (def.inertia) total.inertia = *def.inertia;
     if (!(total.mass >= min_mass && total.mass <= max_mass))
-        return refused(ErrorCode::bad_mass, call,
-                       "mass is " + text(total.mass) + " kg, must be between " + text(min_mass) + " and " + text(max_mass));
+        return refused(
+            ErrorCode::bad_mass, call,
+            "mass is " + text(total.mass) + " kg, must be between " + text(min_mass) + " and " + text(max_mass));
     return total;
 }
 
@@ -151,7 +159,8 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
     }
 }
 
-Result<std::vector<CheckedCollider>> check_colliders(WorldData& world, const std::vector<ColliderDef>& defs, bool moves, const char* call) {
+Result<std::vector<CheckedCollider>> check_colliders(WorldData& world, const std::vector<ColliderDef>& defs, bool moves,
+                                                     const char* call) {
     std::vector<CheckedCollider> out;
     for (const ColliderDef& d : defs) {
         Result<CheckedCollider> c = check_collider(world, d, moves, call);
@@ -202,7 +211,8 @@ Result<BodyId> World::add_rigid_body(const RigidBodyDef& def) {
     // Nothing can be refused from here on.
     for (size_t i = 0; i < defs.size(); ++i)
         if (!def.kinematic && std::holds_alternative<TriangleMesh>(defs[i].shape))
-            world.warnings.push_back("body '" + std::string(def.name) + "' moves: its triangle mesh collides as its convex hull");
+            world.warnings.push_back("body '" + std::string(def.name) +
+                                     "' moves: its triangle mesh collides as its convex hull");
     uint32_t slot = world.bodies.add();
     BodyInfo& info = world.bodies.info[slot];
     info.type = def.kinematic ? BodyType::kinematic : BodyType::dynamic;
@@ -216,7 +226,8 @@ Result<BodyId> World::add_rigid_body(const RigidBodyDef& def) {
     else set_mass(world.bodies, slot, mass, principal).value();
     world.bodies.set_user_pose(slot, {def.position, q.value()});
     world.bodies.momenta[slot].p = def.kinematic ? def.velocity : mass.mass * def.velocity;
-    world.bodies.momenta[slot].L = def.kinematic ? def.angular_velocity : world.bodies.inertia_times(slot, def.angular_velocity);
+    world.bodies.momenta[slot].L =
+        def.kinematic ? def.angular_velocity : world.bodies.inertia_times(slot, def.angular_velocity);
     store_colliders(world, slot, colliders.value());
     return world.bodies.id(slot);
 }

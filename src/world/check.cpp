@@ -13,7 +13,8 @@ std::string World::check() const {
         if (colliders != info.collider_count) return "a body's count of colliders is wrong";
         float norm = dot(w.bodies.pose[slot].orientation, w.bodies.pose[slot].orientation);
         if (!(norm > 0.999f && norm < 1.001f)) return "an orientation has lost its unit length";
-        if (info.type == BodyType::dynamic && !(w.bodies.mass[slot].inverse_mass > 0.0f)) return "a dynamic body has no mass";
+        if (info.type == BodyType::dynamic && !(w.bodies.mass[slot].inverse_mass > 0.0f))
+            return "a dynamic body has no mass";
     }
     for (size_t i = 1; i < w.pairs.now.size(); ++i) {
         const ColliderPair &p = w.pairs.now[i - 1], &q = w.pairs.now[i];

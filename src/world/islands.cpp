@@ -1,12 +1,12 @@
-// Stage 4: groups of bodies that touch or are joined, and which of them rest. A group sleeps when all of it has been slow
-// for a while, and wakes as a whole.
+// Stage 4: groups of bodies that touch or are joined, and which of them rest. A group sleeps when all of it has been
+// slow for a while, and wakes as a whole.
 #include "world/world_data.h"
 
 namespace lendulet {
 namespace {
 
-constexpr float sleep_time = 0.5f;      // s that a whole island must have been slow
-constexpr float sleep_speed = 0.03f;    // m/s of the fastest material point; raises rest noise of the peers by twice
+constexpr float sleep_time = 0.5f;    // s that a whole island must have been slow
+constexpr float sleep_speed = 0.03f;  // m/s of the fastest material point; raises rest noise of the peers by twice
 
 uint32_t root(Array<uint32_t>& parent, uint32_t i) {
     while (parent[i] != i) {

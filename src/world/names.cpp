@@ -10,27 +10,34 @@ std::string_view name_of(SimplexSolver s) { return s == SimplexSolver::barycentr
 
 std::string_view name_of(Integrator i) {
     switch (i) {
-        case Integrator::momentum: return "momentum";
-        case Integrator::explicit_euler: return "explicit-euler";
-        case Integrator::symplectic_euler: return "symplectic-euler";
-        case Integrator::runge_kutta_4: return "runge-kutta-4";
+        case Integrator::momentum:
+            return "momentum";
+        case Integrator::explicit_euler:
+            return "explicit-euler";
+        case Integrator::symplectic_euler:
+            return "symplectic-euler";
+        case Integrator::runge_kutta_4:
+            return "runge-kutta-4";
     }
     return "";
 }
 
 std::string_view name_of(Stage stage) {
-    constexpr std::string_view names[] = {"bounds", "broad_phase", "pairs", "narrow_phase", "islands", "prepare", "solve", "finish"};
+    constexpr std::string_view names[] = {"bounds",  "broad_phase", "pairs", "narrow_phase",
+                                          "islands", "prepare",     "solve", "finish"};
     return stage < Stage::count ? names[static_cast<int>(stage)] : std::string_view{};
 }
 
 Result<SimplexSolver> simplex_from_name(std::string_view name) {
     for (SimplexSolver s : {SimplexSolver::barycentric, SimplexSolver::half_space})
         if (name == name_of(s)) return s;
-    return Error{ErrorCode::unknown_name, "no simplex solver is named '" + std::string(name) + "'; there are barycentric, half-space"};
+    return Error{ErrorCode::unknown_name,
+                 "no simplex solver is named '" + std::string(name) + "'; there are barycentric, half-space"};
 }
 
 Result<Integrator> integrator_from_name(std::string_view name) {
-    for (Integrator i : {Integrator::momentum, Integrator::explicit_euler, Integrator::symplectic_euler, Integrator::runge_kutta_4})
+    for (Integrator i :
+         {Integrator::momentum, Integrator::explicit_euler, Integrator::symplectic_euler, Integrator::runge_kutta_4})
         if (name == name_of(i)) return i;
     return Error{ErrorCode::unknown_name, "no integrator is named '" + std::string(name) +
                                               "'; there are momentum, explicit-euler, symplectic-euler, runge-kutta-4"};

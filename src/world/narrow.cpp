@@ -85,8 +85,14 @@ PairSides sides(const WorldData& world, const ColliderPair& p) {
 CollidePair collide_input(const WorldData& world, const PairSides& s, float margin) {
     const ColliderStore& c = world.colliders;
     const ColliderPlace &pa = c.place[s.collider_a], &pb = c.place[s.collider_b];
-    Vec3 centres = world.bodies.pose[c.info[s.collider_b].body].position - world.bodies.pose[c.info[s.collider_a].body].position;
-    return {&c.geometry[s.collider_a], &c.geometry[s.collider_b], pa.rotation, pb.rotation, centres + (pb.arm - pa.arm), margin};
+    Vec3 centres =
+        world.bodies.pose[c.info[s.collider_b].body].position - world.bodies.pose[c.info[s.collider_a].body].position;
+    return {&c.geometry[s.collider_a],
+            &c.geometry[s.collider_b],
+            pa.rotation,
+            pb.rotation,
+            centres + (pb.arm - pa.arm),
+            margin};
 }
 
 void fill_record(const WorldData& world, const PairSides& s, const Manifold& m, uint32_t pair, ContactRecord& r) {
@@ -168,7 +174,8 @@ void find_contacts(WorldData& world, float dt) {
     for (size_t i = 0; i < pairs.now.size(); ++i) {
         ColliderPair& p = pairs.now[i];
         world.old_places[i] = {p.first_record, p.count};
-        bool mesh = world.colliders.geometry[p.a].kind == GeometryKind::mesh || world.colliders.geometry[p.b].kind == GeometryKind::mesh;
+        bool mesh = world.colliders.geometry[p.a].kind == GeometryKind::mesh ||
+                    world.colliders.geometry[p.b].kind == GeometryKind::mesh;
         p.capacity = mesh ? max_mesh_manifolds : 1;
         p.first_record = total;
         total += p.capacity;

@@ -24,9 +24,11 @@ void pack_body(WorldData& world, size_t i, float h) {
     const BodyMass& mass = bodies.mass[slot];
     size_t k = i + reserved_bodies;
     bool dynamic = info.type == BodyType::dynamic;
+    BodyStart start{};
+    put(start.v, bodies.velocity(slot));
+    put(start.w, bodies.angular_velocity(slot));
+    world.solver_bodies.start[k] = start;
     BodyState s{};
-    put(s.v, bodies.velocity(slot));
-    put(s.w, bodies.angular_velocity(slot));
     s.inverse_mass = dynamic ? mass.inverse_mass : 0.0f;
     s.dq[3] = 1.0f;
     world.solver_bodies.state[k] = s;
@@ -44,13 +46,12 @@ void pack_body(WorldData& world, size_t i, float h) {
     m.q0[0] = q.x, m.q0[1] = q.y, m.q0[2] = q.z, m.q0[3] = q.w;
     m.anisotropy = 1.0f;
     m.free = 1.0f;
-    m.linear_decay = m.angular_decay = 1.0f;
     if (dynamic) {
         Decay linear = decay(info.linear_damping, h), angular = decay(info.angular_damping, h);
         put(m.inertia, mass.inertia);
         put(m.inverse_inertia, mass.inverse_inertia);
-        m.linear_decay = linear.factor;
-        m.angular_decay = angular.factor;
+        m.linear_loss = linear.loss;
+        m.angular_loss = angular.loss;
         m.anisotropy = mass.anisotropy;
         put(m.angular_momentum, bodies.momenta[slot].L);
         put(m.acceleration, linear.mean * acceleration(world, slot));
@@ -61,11 +62,18 @@ void pack_body(WorldData& world, size_t i, float h) {
     world.solver_bodies.motion[k] = m;
 }
 
-// p += dp with the rounding error kept (Kahan 1965).
+// p += dp and x += dx with the rounding error kept (Kahan 1965): a body that glides far from the origin would lose a
+// share of every step, always the same one.
 void add_momentum(BodyMomenta& m, Vec3 dp) {
     Vec3 y = dp - m.p_low, t = m.p + y;
     m.p_low = (t - m.p) - y;
     m.p = t;
+}
+void add_displacement(Position& x, Vec3& low, Vec3 dx) {
+    Vec3 y = dx - low;
+    Position t = x + y;
+    low = (t - x) - y;
+    x = t;
 }
 
 // What a body alone does under the chosen reference integrator.
@@ -73,13 +81,16 @@ void fly(WorldData& world, uint32_t slot, float dt) {
     BodyStore& bodies = world.bodies;
     const BodyInfo& info = bodies.info[slot];
     const BodyMass& mass = bodies.mass[slot];
-    FlightBody body{mass.inverse_mass, mass.inverse_inertia, mass.mass * acceleration(world, slot),
-                    bodies.forces[slot].torque, info.linear_damping, info.angular_damping};
+    FlightBody body{mass.inverse_mass,          mass.inverse_inertia, mass.mass * acceleration(world, slot),
+                    bodies.forces[slot].torque, info.linear_damping,  info.angular_damping};
     FlightState s{{}, bodies.pose[slot].orientation, bodies.momenta[slot].p, bodies.momenta[slot].L};
     float h = dt / static_cast<float>(world.config.solver_steps);
     for (int i = 0; i < world.config.solver_steps; ++i) s = advance(s, body, world.config.integrator, h);
-    bodies.pose[slot] = {bodies.pose[slot].position + s.x, s.q};
-    bodies.momenta[slot] = {s.p, {}, s.L};
+    BodyMomenta& momenta = bodies.momenta[slot];
+    add_displacement(bodies.pose[slot].position, momenta.x_low, s.x);
+    bodies.pose[slot].orientation = s.q;
+    momenta.p = s.p;
+    momenta.L = s.L;
 }
 
 // Cuts speeds beyond the limit; true where one was.
@@ -107,16 +118,15 @@ void unpack_body(WorldData& world, size_t i, float dt) {
     }
     Pose& pose = bodies.pose[slot];
     BodyMomenta& momenta = bodies.momenta[slot];
-    Vec3 dv = get(s.v) - bodies.velocity(slot);
-    pose.position = pose.position + get(s.dp);
+    add_displacement(pose.position, momenta.x_low, get(s.dp));
     pose.orientation = normalize(Quat{s.dq[0], s.dq[1], s.dq[2], s.dq[3]} * pose.orientation);
     if (!dynamic) return;
     if (m.free > 0.0f) {  // exactly: m g dt, not what is left of it after adding to a large velocity
         Decay whole = decay(info.linear_damping, dt);
-        if (info.linear_damping > 0.0f) momenta.p = whole.factor * momenta.p, momenta.p_low = whole.factor * momenta.p_low;
-        add_momentum(momenta, (whole.mean * dt * bodies.mass[slot].mass) * acceleration(world, slot));
+        add_momentum(momenta,
+                     (whole.mean * dt * bodies.mass[slot].mass) * acceleration(world, slot) - whole.loss * momenta.p);
     } else {
-        add_momentum(momenta, bodies.mass[slot].mass * dv);
+        add_momentum(momenta, bodies.mass[slot].mass * get(s.v));
     }
     momenta.L = get(m.angular_momentum);
     bodies.change[slot] = {get(m.change_v), get(m.change_L)};
@@ -130,8 +140,9 @@ void pack_bodies(WorldData& world, float h) {
     for (uint32_t slot : bodies.slots.order()) {
         BodyInfo& info = bodies.info[slot];
         const BodyMomenta& m = bodies.momenta[slot];
-        bool packed = info.type == BodyType::dynamic ? !info.asleep
-                      : info.type == BodyType::kinematic && length_squared(m.p) + length_squared(m.L) > 0.0f;
+        bool packed = info.type == BodyType::dynamic
+                          ? !info.asleep
+                          : info.type == BodyType::kinematic && length_squared(m.p) + length_squared(m.L) > 0.0f;
         info.solver_index = packed ? reserved_bodies + world.awake.count() : static_body;
         if (packed) world.awake.push_back(slot);
     }
@@ -147,9 +158,11 @@ void pack_contacts(WorldData& world) {
         ContactRecord& r = world.records[i];
         const ColliderPair& p = world.pairs.now[r.pair];
         bool flipped = (r.flags & contact_flipped) != 0;
-        uint32_t body_a = world.colliders.info[flipped ? p.b : p.a].body, body_b = world.colliders.info[flipped ? p.a : p.b].body;
+        uint32_t body_a = world.colliders.info[flipped ? p.b : p.a].body,
+                 body_b = world.colliders.info[flipped ? p.a : p.b].body;
         const BodyInfo &a = world.bodies.info[body_a], &b = world.bodies.info[body_b];
-        if (b.asleep || b.type != BodyType::dynamic) continue;  // B moves wherever one of them does, and islands wake as one
+        if (b.asleep || b.type != BodyType::dynamic)
+            continue;  // B moves wherever one of them does, and islands wake as one
         r.body_a = a.solver_index;
         r.body_b = b.solver_index;
         world.solver_bodies.motion[static_cast<size_t>(r.body_a)].free = 0.0f;
@@ -169,7 +182,8 @@ void unpack_bodies(WorldData& world, float dt) {
             info.capped = info.type == BodyType::dynamic && cap_speed(world, slot);
             const BodyMomenta& m = bodies.momenta[slot];
             const Pose& pose = bodies.pose[slot];
-            bool sound = finite(from_origin(pose.position)) && finite(m.p) && finite(m.L) && dot(pose.orientation, pose.orientation) < 2.0f;
+            bool sound = finite(from_origin(pose.position)) && finite(m.p) && finite(m.L) &&
+                         dot(pose.orientation, pose.orientation) < 2.0f;
             info.contained = !sound;
             if (!sound) {  // put back and stopped, so that it cannot spoil others
                 bodies.pose[slot] = before;

@@ -12,10 +12,10 @@ namespace lendulet {
 inline constexpr uint32_t no_cache = ~0u;
 
 struct ColliderPair {
-    uint32_t a, b;            // collider slots, a < b
-    uint32_t cache;           // index into PairTable::caches; no_cache: a collider was removed since the step
-    uint32_t first_record;    // of this pair in the step's records; room for `capacity`
-    uint16_t capacity, count; // manifolds: room, and those found
+    uint32_t a, b;             // collider slots, a < b
+    uint32_t cache;            // index into PairTable::caches; no_cache: a collider was removed since the step
+    uint32_t first_record;     // of this pair in the step's records; room for `capacity`
+    uint16_t capacity, count;  // manifolds: room, and those found
 };
 
 // The sorted list makes everything downstream independent of the broad phase's own order.

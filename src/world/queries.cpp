@@ -53,8 +53,7 @@ int World::query_boxes(const Aabb& box, ColliderId* out, int capacity) const {
 Result<BoxHit> World::nearest_box(Position origin, Vec3 translation) const {
     if (!is_finite(from_origin(origin)) || !is_finite(translation))
         return Error{ErrorCode::bad_query, "nearest_box: origin and translation must be finite"};
-    if (!(length_squared(translation) > 0.0f))
-        return Error{ErrorCode::bad_query, "nearest_box: the ray has no length"};
+    if (!(length_squared(translation) > 0.0f)) return Error{ErrorCode::bad_query, "nearest_box: the ray has no length"};
     float o[3] = {origin.x, origin.y, origin.z}, d[3] = {translation.x, translation.y, translation.z}, t = 0.0f;
     uint32_t slot = data_->broad_phase.ray(o, d, 1.0f, t);
     if (slot != no_box && data_->colliders.info[slot].body == no_slot) slot = nearest_of_all(*data_, o, d, t);

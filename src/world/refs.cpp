@@ -34,11 +34,15 @@ Status checked(bool good, const char* call, const char* what) {
 
 }  // namespace
 
-const Shape& StaticBodyRef::shape(int collider) const { return world_->colliders.shape[collider_slot(*world_, slot_, collider)]; }
+const Shape& StaticBodyRef::shape(int collider) const {
+    return world_->colliders.shape[collider_slot(*world_, slot_, collider)];
+}
 Transform StaticBodyRef::collider_pose(int collider) const {
     return world_->colliders.given[collider_slot(*world_, slot_, collider)];
 }
-ColliderId StaticBodyRef::collider(int index) const { return world_->colliders.id(collider_slot(*world_, slot_, index)); }
+ColliderId StaticBodyRef::collider(int index) const {
+    return world_->colliders.id(collider_slot(*world_, slot_, index));
+}
 
 Aabb StaticBodyRef::aabb() const {
     const BodyStore& bodies = world_->bodies;
@@ -61,9 +65,7 @@ float RigidBodyRef::mass() const {
 float RigidBodyRef::inverse_mass() const { return world_->bodies.mass[slot_].inverse_mass; }
 Position RigidBodyRef::centre_of_mass() const { return world_->bodies.pose[slot_].position; }
 SymMat3 RigidBodyRef::inverse_inertia() const { return world_->bodies.inverse_inertia_world(slot_); }
-Vec3 RigidBodyRef::momentum() const {
-    return type() == BodyType::dynamic ? world_->bodies.momenta[slot_].p : Vec3{};
-}
+Vec3 RigidBodyRef::momentum() const { return type() == BodyType::dynamic ? world_->bodies.momenta[slot_].p : Vec3{}; }
 Vec3 RigidBodyRef::angular_momentum() const {
     return type() == BodyType::dynamic ? world_->bodies.momenta[slot_].L : Vec3{};
 }
@@ -168,7 +170,8 @@ Status RigidBodyRef::move_to(Position position, Quat orientation, float dt) {
     if (!q) return q.error();
     Status place = valid_position(position, "move_to");
     if (!place) return place;
-    if (!(dt > 0.0f) || !is_finite(dt)) return Error{ErrorCode::bad_time_step, "move_to: dt must be positive and finite"};
+    if (!(dt > 0.0f) || !is_finite(dt))
+        return Error{ErrorCode::bad_time_step, "move_to: dt must be positive and finite"};
     // The principal frame is what turns and moves: velocities that carry it to its place under the wanted body frame.
     Pose now = world_->bodies.pose[slot_], target = Pose{position, q.value()} * world_->bodies.principal[slot_];
     Quat turn = target.orientation * conjugate(now.orientation);

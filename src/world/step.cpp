@@ -49,11 +49,16 @@ void step(WorldData& world, float dt) {
     pack_bodies(world, h);
     pack_contacts(world);
     pack_joints(world, h);
-    world.solver.prepare(world.tasks, world.solver_bodies, world.records.data(), world.active.data(), world.active.count());
+    world.solver.prepare(world.tasks, world.solver_bodies, world.records.data(), world.active.data(),
+                         world.active.count());
+    world.solver.prepare_joints(world.tasks, world.solver_bodies, world.joint_records.data(),
+                                world.joint_records.count(),
+                                {world.records.data(), world.active.data(), world.active.count()});
     clock.lap(Stage::prepare);
     world.solver.solve(world.tasks, settings, world.solver_bodies, world.records.data());
     clock.lap(Stage::solve);
     world.solver.store(world.tasks, world.records.data());
+    world.solver.store_joints(world.tasks);
     unpack_joints(world, h);
     unpack_bodies(world, dt);
     finish_step(world, dt);

@@ -20,10 +20,12 @@ Status check_config(const WorldConfig& c) {
         return bad_config("rigid separation speed is " + text(c.rigid_separation_speed) + ", must be positive");
     if (!(c.static_separation_speed > 0.0f) || !is_finite(c.static_separation_speed))
         return bad_config("static separation speed is " + text(c.static_separation_speed) + ", must be positive");
-    if (!(c.friction >= 0.0f) || !is_finite(c.friction)) return bad_config("friction is " + text(c.friction) + ", must not be negative");
+    if (!(c.friction >= 0.0f) || !is_finite(c.friction))
+        return bad_config("friction is " + text(c.friction) + ", must not be negative");
     if (!(c.restitution >= 0.0f && c.restitution <= 1.0f))
         return bad_config("bounciness is " + text(c.restitution) + ", must be between 0 and 1");
-    if (c.workers < 1 || c.workers > 64) return bad_config("workers are " + std::to_string(c.workers) + ", must be 1 to 64");
+    if (c.workers < 1 || c.workers > 64)
+        return bad_config("workers are " + std::to_string(c.workers) + ", must be 1 to 64");
     if (c.width != 0 && c.width != 1 && c.width != 4 && c.width != 8 && c.width != 16)
         return bad_config("width is " + std::to_string(c.width) + ", must be 1, 4, 8 or 16");
     if ((c.allocator.allocate == nullptr) != (c.allocator.free == nullptr))
@@ -140,7 +142,8 @@ double World::kinetic_energy() const {
     for (uint32_t slot : data_->bodies.slots.order())
         if (data_->bodies.info[slot].type == BodyType::dynamic) {
             const BodyMomenta& m = data_->bodies.momenta[slot];
-            sum += 0.5 * (static_cast<double>(dot(m.p, data_->bodies.velocity(slot))) + dot(m.L, data_->bodies.angular_velocity(slot)));
+            sum += 0.5 * (static_cast<double>(dot(m.p, data_->bodies.velocity(slot))) +
+                          dot(m.L, data_->bodies.angular_velocity(slot)));
         }
     return sum;
 }
@@ -180,8 +183,19 @@ uint64_t World::hash() const {
     for (uint32_t slot : world.bodies.slots.order()) {
         const Pose& pose = world.bodies.pose[slot];
         const BodyMomenta& m = world.bodies.momenta[slot];
-        float values[13] = {pose.position.x, pose.position.y, pose.position.z, pose.orientation.x, pose.orientation.y,
-                            pose.orientation.z, pose.orientation.w, m.p.x, m.p.y, m.p.z, m.L.x, m.L.y, m.L.z};
+        float values[13] = {pose.position.x,
+                            pose.position.y,
+                            pose.position.z,
+                            pose.orientation.x,
+                            pose.orientation.y,
+                            pose.orientation.z,
+                            pose.orientation.w,
+                            m.p.x,
+                            m.p.y,
+                            m.p.z,
+                            m.L.x,
+                            m.L.y,
+                            m.L.z};
         h = hash_floats(h, values, 13);
     }
     for (uint32_t i : world.touching) {

@@ -39,28 +39,28 @@ struct WorldData {
     // Bounds of colliders, by who moves, with the collider's slot as index.
     BroadPhase broad_phase;
     Array<BroadBox> moving_boxes, fixed_boxes;
-    bool fixed_changed = true;         // static colliders came, went or moved
+    bool fixed_changed = true;  // static colliders came, went or moved
     Array<BoxPair> box_pairs;
     PairTable pairs;
 
     // Manifolds of this step and the one before; each pair has its own stretch.
     Array<ContactRecord> records, old_records;
     Array<OldPlace> old_places;
-    Array<uint32_t> touching;          // records with points, in order
-    Array<uint32_t> active;            // those of them that are solved: at least one body awake
+    Array<uint32_t> touching;  // records with points, in order
+    Array<uint32_t> active;    // those of them that are solved: at least one body awake
     Array<Overlap> overlaps;
-    Array<uint8_t> trigger_hits;       // by pair
-    Array<uint32_t> active_joints;     // slots of the joints that are solved, in creation order
+    Array<uint8_t> trigger_hits;    // by pair
+    Array<uint32_t> active_joints;  // slots of the joints that are solved, in creation order
     Array<JointRecord> joint_records;
 
     // This step's awake bodies, packed for the solver.
-    Array<uint32_t> awake;             // slots, in order of slots
+    Array<uint32_t> awake;  // slots, in order of slots
     SolverBodies solver_bodies;
     Solver solver;
-    Array<uint32_t> island_parent;     // union-find over body slots
+    Array<uint32_t> island_parent;  // union-find over body slots
     Array<float> island_still;
 
-    float last_h = 0.0f;               // substep that the stored impulses belong to
+    float last_h = 0.0f;  // substep that the stored impulses belong to
     bool in_step = false;
     double time = 0.0;
     uint64_t steps = 0;
@@ -88,11 +88,11 @@ void remove_joints_of(WorldData& world, uint32_t body);
 void wake_body(WorldData& world, uint32_t slot);
 
 // Speeds beyond these are cut (and counted): positions in single precision do not resolve such motion.
-inline constexpr float max_speed = 1e4f;           // m/s
-inline constexpr float max_angular_speed = 3e3f;   // rad/s, about 200 turns per step at 60 Hz
+inline constexpr float max_speed = 1e4f;          // m/s
+inline constexpr float max_angular_speed = 3e3f;  // rad/s, about 200 turns per step at 60 Hz
 // Surfaces this close are already given contact points, so that resting contacts are not found anew every step.
-inline constexpr float contact_margin = 0.02f;     // m; less for small bodies
+inline constexpr float contact_margin = 0.02f;  // m; less for small bodies
 // Positions beyond this have a resolution worse than a millimetre-sized contact needs.
-inline constexpr float world_extent = 1e7f;        // m
+inline constexpr float world_extent = 1e7f;  // m
 
 }  // namespace lendulet

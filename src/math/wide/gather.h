@@ -68,6 +68,16 @@ inline constexpr int native_lanes = 4;
 
 }  // namespace detail
 
+// The floats of a record, for gather4 and scatter4 over an array of them.
+template <class Record>
+LENDULET_FORCE_INLINE const float* floats_of(const Record* records) {
+    return reinterpret_cast<const float*>(records);
+}
+template <class Record>
+LENDULET_FORCE_INLINE float* floats_of(Record* records) {
+    return reinterpret_cast<float*>(records);
+}
+
 // out[k] lane i = base[index[i] * stride + offset + k], k = 0 .. 3; stride and offset in floats.
 template <int W>
 LENDULET_FORCE_INLINE void gather4(const float* base, const int32_t* index, int stride, int offset, Wide<float, W> out[4]) {
