@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#define TINYGLTF_NO_FS
 #define TINYGLTF_NO_INCLUDE_JSON
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE

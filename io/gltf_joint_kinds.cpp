@@ -14,11 +14,13 @@ constexpr double lock_slack = 1e-6;  // m or rad; a range this small is a lock
 // What the limits say about one axis alone.
 struct Axis {
     bool limited = false, soft = false;
+    bool released = false;  // a soft lock that is taken as a spring on an axis without limits
     double lower = -INFINITY, upper = INFINITY;
     double stiffness = 0.0, damping = 0.0;
-    bool locked() const { return limited && upper - lower <= lock_slack; }
+    bool tight() const { return limited && upper - lower <= lock_slack; }
+    bool locked() const { return tight() && !released; }
     bool free() const { return !limited; }
-    bool ranged() const { return limited && !locked(); }
+    bool ranged() const { return limited && !tight(); }
 };
 
 // What they say about all six, and about two swing angles together.
@@ -103,7 +105,7 @@ Limit limit_of(const Axis& axis, double farthest) {
 
 // A soft limit that is a lock is a spring; hard engine limits stand for other soft limits.
 void set_free_axis(const Axis& axis, double farthest, JointKind& kind) {
-    if (axis.soft && axis.locked()) {
+    if (axis.released) {
         kind.spring.stiffness = static_cast<float>(axis.stiffness);
         kind.spring.damping = static_cast<float>(axis.damping);
         kind.spring.target = static_cast<float>(0.5 * (axis.lower + axis.upper));
@@ -201,6 +203,19 @@ bool classify(const Freedoms& f, JointKind& kind, std::string& why) {
     return true;
 }
 
+// The one lock that is soft, null where there are more or none: the free axis of a hinge or slider with a spring, if
+// the other axes are as they should be.
+Axis* only_soft_lock(Freedoms& f) {
+    Axis* found = nullptr;
+    int count = 0;
+    for (auto* axes : {&f.linear, &f.angular}) {
+        for (Axis& a : *axes) {
+            if (a.tight() && a.soft) found = &a, ++count;
+        }
+    }
+    return count == 1 ? found : nullptr;
+}
+
 JointDrive read_drive(const Field& field) {
     JointDrive drive;
     drive.stiffness = static_cast<float>(field["stiffness"].number_or(0.0));
@@ -251,7 +266,15 @@ std::optional<JointKind> joint_kind(const Field& description, std::string& why) 
         why = "a pair of limits that exclude each other is";
         return std::nullopt;
     }
-    if (!classify(f, kind, why)) return std::nullopt;
+    bool is_sprung = false;
+    if (Axis* sprung = only_soft_lock(f)) {
+        sprung->released = true;
+        std::string ignored;
+        is_sprung = classify(f, kind, ignored) && kind.spring.stiffness > 0.0f;
+        sprung->released = is_sprung;
+        if (!is_sprung) kind = {};
+    }
+    if (!is_sprung && !classify(f, kind, why)) return std::nullopt;
     add_drives(description["drives"], f, kind);
     return kind;
 }

@@ -4,5 +4,4 @@
 #include <nlohmann/json.hpp>
 
 #define TINYGLTF_IMPLEMENTATION
-#define TINYGLTF_NO_FS
 #include "io/gltf_container.h"

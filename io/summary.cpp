@@ -55,6 +55,7 @@ RunObserver::RunObserver(const Scene& scene) : stage_ms_(stage_count) {
     for (const auto& [id, name] : scene.collider_names) collider_names_[key_of(id)] = name;
     const World& world = scene.world;
     summary_.scene = scene.name;
+    step_start_ = world.time();
     summary_.energy_start = world.kinetic_energy() + world.potential_energy();
     summary_.momentum_start = world.momentum();
 }
@@ -68,10 +69,11 @@ void RunObserver::after_step(const Scene& scene) {
     summary_.max_penetration = std::max<double>(summary_.max_penetration, statistics.max_penetration);
     ++summary_.steps;
     note_overlaps(scene);
+    step_start_ = scene.world.time();
 }
 
 // The parts of a compound trigger go by one name, so they give one event for each body that meets them; other triggers
-// are told apart by their body, as names may repeat.
+// are told apart by their body, as names may repeat. A step looks for overlaps where the bodies stand when it begins.
 void RunObserver::note_overlaps(const Scene& scene) {
     const World& world = scene.world;
     auto name_of_body = [&](BodyId id) {
@@ -88,7 +90,7 @@ void RunObserver::note_overlaps(const Scene& scene) {
             own != collider_names_.end() ? own->second : "\n" + std::to_string(key_of(overlap.trigger_body));
         if (!seen_.try_emplace({identity, key_of(overlap.other_body)}, summary_.triggers.size()).second) continue;
         if (trigger.empty()) trigger = name_of_body(overlap.trigger_body);
-        summary_.triggers.push_back({trigger, name_of_body(overlap.other_body), world.time()});
+        summary_.triggers.push_back({trigger, name_of_body(overlap.other_body), step_start_});
     }
 }
 

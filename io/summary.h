@@ -28,7 +28,7 @@ struct SummaryBody {
 // A collider that overlapped a trigger, and when it was first seen to.
 struct TriggerEvent {
     std::string trigger, other;
-    double first_time = 0.0;  // s, at the end of the step
+    double first_time = 0.0;  // s
 };
 
 struct RunSummary {
@@ -63,6 +63,7 @@ private:
     StepTimes times() const;
 
     RunSummary summary_;
+    double step_start_ = 0.0;  // the world's time before the step to come, s
     std::vector<float> total_ms_;
     std::vector<std::vector<float>> stage_ms_;
     std::map<uint64_t, std::string> collider_names_;

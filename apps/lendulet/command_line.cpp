@@ -66,8 +66,8 @@ void add_run_options(CLI::App& command, RunOptions& options, RawOptions& raw) {
 }
 
 void finish_run_options(const CLI::App& command, const RawOptions& raw, RunOptions& options) {
-    if (!raw.seconds.empty()) options.seconds = parse_number("--seconds", raw.seconds);
-    if (!raw.dt.empty()) options.dt = parse_number("--dt", raw.dt);
+    if (command.count("--seconds")) options.seconds = parse_number("--seconds", raw.seconds);
+    if (command.count("--dt")) options.dt = parse_number("--dt", raw.dt);
     if (!(options.seconds >= 0.0)) throw BadOption{"--seconds must not be negative"};
     if (!(options.dt > 0.0 && options.dt <= 1.0)) throw BadOption{"--dt must be more than 0 and at most 1 s"};
     if (options.seconds / options.dt > 1e9) throw BadOption{"--seconds / --dt is more than a thousand million steps"};
@@ -92,6 +92,11 @@ void finish_run_options(const CLI::App& command, const RawOptions& raw, RunOptio
 }  // namespace
 
 int execute(int argc, char** argv) {
+    if (argc < 2) return fail("a command is required: run, info or scenes (--help says more)");
+    std::string first = argv[1];
+    if (first.rfind('-', 0) != 0 && first != "run" && first != "info" && first != "scenes") {
+        return fail("\"" + printable(first) + "\" is no command; there are run, info and scenes");
+    }
     CLI::App app{"Lendulet: rigid bodies in three dimensions.", "lendulet"};
     app.set_version_flag("--version", "lendulet " LENDULET_VERSION);
     app.require_subcommand(1);

@@ -1,0 +1,126 @@
+// `lendulet` over bad input: exit code 2 and one sentence on standard error, also with --quiet.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "program.h"
+
+namespace lendulet::test {
+namespace {
+
+void expect_refused(const std::vector<std::string>& arguments, const std::string& part) {
+    Outcome outcome = lendulet(arguments);
+    std::string line;
+    for (const std::string& a : arguments) line += a + ' ';
+    EXPECT_EQ(outcome.exit_code, 2) << line << outcome.err;
+    EXPECT_EQ(outcome.out, "") << line;
+    EXPECT_EQ(outcome.err.rfind("lendulet: ", 0), 0u) << line << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << line << outcome.err;
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << line << outcome.err;
+}
+
+std::string file_with(const std::string& name, const std::string& content) {
+    std::string path = scratch(name);
+    std::ofstream(path, std::ios::binary) << content;
+    return path;
+}
+
+TEST(BadInput, CommandsAndOptions) {
+    expect_refused({}, "a command is required");
+    expect_refused({"--quiet"}, "");
+    expect_refused({""}, "is no command");
+    expect_refused({"jump"}, "jump");
+    expect_refused({"run"}, "SCENE");
+    expect_refused({"run", "no_such_scene"}, "no_such_scene");
+    expect_refused({"run", "no_such_scene", "--quiet"}, "no_such_scene");
+    expect_refused({"run", "stack", "--what"}, "--what");
+    expect_refused({"run", "stack", "extra"}, "extra");
+    expect_refused({"run", "stack", "--seconds"}, "--seconds");
+    expect_refused({"run", "stack:0"}, "");
+    expect_refused({"run", "stack:-3"}, "");
+    expect_refused({"run", "stack:99999999999999999999"}, "");
+    for (const char* bad : {"x", "", "1/0", "1/", "/2", "1/2/3", "nan", "inf", "1e999", "0x10", " 1", "1,5"}) {
+        expect_refused({"run", "stack", "--dt", bad}, "--dt");
+        expect_refused({"run", "stack", "--seconds", bad, "--quiet"}, "--seconds");
+    }
+    expect_refused({"run", "stack", "--dt", "0"}, "--dt must be more than 0");
+    expect_refused({"run", "stack", "--dt=-1/60"}, "--dt must be more than 0");
+    expect_refused({"run", "stack", "--dt", "2"}, "at most 1 s");
+    expect_refused({"run", "stack", "--seconds=-1"}, "--seconds must not be negative");
+    expect_refused({"run", "stack", "--seconds", "1e30"}, "steps");
+    expect_refused({"run", "stack", "--threads", "0"}, "");
+    expect_refused({"run", "stack", "--threads", "1000"}, "");
+    expect_refused({"run", "stack", "--threads", "two"}, "--threads");
+    expect_refused({"run", "stack", "--solver-steps", "0"}, "");
+    expect_refused({"run", "stack", "--solver-steps", "65"}, "");
+    expect_refused({"run", "stack", "--width", "3"}, "--width");
+    expect_refused({"run", "stack", "--width", "0"}, "--width");
+    expect_refused({"run", "stack", "--broad-phase", "magic"}, "magic");
+    expect_refused({"run", "stack", "--broad-phase", ""}, "--broad-phase");
+    expect_refused({"run", "stack", "--simplex", "magic"}, "magic");
+    expect_refused({"run", "stack", "--integrator", "magic"}, "magic");
+    expect_refused({"run", "stack", "--json", "/no/such/directory/x"}, "/no/such/directory/x: cannot be written");
+    expect_refused({"run", "stack", "--record", "/no/such/directory/x"}, "/no/such/directory/x: cannot be written");
+    expect_refused({"run", "scenes/files/motion.gltf", "--threads", "0"}, "");
+}
+
+TEST(BadInput, SceneFiles) {
+    expect_refused({"run", "missing.gltf"}, "missing.gltf: no such file");
+    expect_refused({"run", "missing.glb", "--quiet"}, "missing.glb: no such file");
+    std::filesystem::create_directories(scratch("folder.gltf"));
+    expect_refused({"run", scratch("folder.gltf")}, "not a regular file");
+    expect_refused({"run", file_with("empty.gltf", "")}, "empty.gltf: is not valid JSON");
+    expect_refused({"run", file_with("empty.glb", "")}, "empty.glb: ");
+    expect_refused({"run", file_with("short.glb", "glTF\2\0\0\0"), "--json", "-"}, "short.glb: ");
+    expect_refused({"run", file_with("noise.glb", std::string(5000, '\xa7'))}, "noise.glb: ");
+    expect_refused({"run", file_with("deep.gltf", std::string(1000000, '['))}, "nested deeper");
+    expect_refused({"run", file_with("outside.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":1,)"
+                                                     R"("uri":"../stdout"}]})")},
+                   "leaves the scene's directory");
+}
+
+TEST(BadInput, Recordings) {
+    expect_refused({"info"}, "FILE");
+    expect_refused({"info", "missing"}, "missing: no such file");
+    expect_refused({"info", "CMakeLists.txt"}, "CMakeLists.txt: is no recording");
+    expect_refused({"info", "scenes"}, "not a regular file");
+    std::string whole = scratch("whole");
+    ASSERT_EQ(lendulet({"run", "stack:2", "--seconds", "0.1", "--record", whole, "--quiet"}).exit_code, 0);
+    std::ifstream in(whole, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    expect_refused({"info", file_with("half", bytes.substr(0, bytes.size() / 2))}, "half: ends too early, at byte");
+}
+
+// A file that is refused may cost four times its size and 64 MB.
+TEST(BadInput, HostileFilesStaySmallInMemory) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers take memory of their own";
+#endif
+    auto peak = [](const std::string& name, const std::string& content) {
+        Outcome outcome = lendulet({"run", file_with(name, content), "--seconds", "0", "--quiet"});
+        EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 2) << name << outcome.err;
+        return outcome.peak_kilobytes - static_cast<long>(4 * content.size() / 1024);
+    };
+    const std::string head = "{\"asset\":{\"version\":\"2.0\"},";
+    auto repeated = [&](const std::string& member, const std::string& item, int count) {
+        std::string text = head + "\"" + member + "\":[";
+        for (int i = 0; i < count; ++i) text += item + ',';
+        return text + item + "]}";
+    };
+    constexpr long limit = 64 * 1024;
+    EXPECT_LT(peak("nodes.gltf", repeated("nodes", "{}", 2000000)), limit);
+    EXPECT_LT(peak("numbers.gltf", repeated("nodes", "0", 4000000)), limit);
+    EXPECT_LT(
+        peak("accessors.gltf", repeated("accessors", R"({"count":1,"type":"VEC3","componentType":5126})", 100000)),
+        limit);
+    EXPECT_LT(peak("textures.gltf", repeated("textures", "{}", 2000000)), limit);
+    EXPECT_LT(peak("string.gltf", head + "\"extras\":\"" + std::string(30000000, 'x') + "\"}"), limit);
+    EXPECT_LT(peak("buffer.gltf", head + "\"buffers\":[{\"byteLength\":22500000,\"uri\":\"data:a/b;base64," +
+                                      std::string(30000000, 'A') + "\"}]}"),
+              limit);
+}
+
+}  // namespace
+}  // namespace lendulet::test

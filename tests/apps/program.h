@@ -1,0 +1,22 @@
+// Runs the real program, as a user would, and catches what it says.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace lendulet::test {
+
+struct Outcome {
+    int exit_code = -1;  // 128 + signal where it died of one
+    std::string out, err;
+    long peak_kilobytes = 0;
+};
+
+// Runs `lendulet` with these arguments in the repository's root. Where `interrupt_after_ms` is not negative, sends it
+// an interrupt (as Ctrl-C does) that much later.
+Outcome lendulet(const std::vector<std::string>& arguments, int interrupt_after_ms = -1);
+
+// A path in a directory of this process' own, which is removed at its end.
+std::string scratch(const std::string& name);
+
+}  // namespace lendulet::test

@@ -1,0 +1,139 @@
+// `lendulet run` over good input: options, outputs, interruption.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+#include "tests/scale.h"
+
+namespace lendulet::test {
+namespace {
+
+using Json = nlohmann::json;
+
+// Runs with --json - and reads the JSON.
+Json run_json(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), {"--json", "-", "--quiet"});
+    Outcome outcome = lendulet(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    return Json::parse(outcome.out);
+}
+
+TEST(Run, BuiltInSceneWithEveryOption) {
+    Json json = run_json({"stack:3", "--seconds", "0.5", "--dt", "1/120", "--threads", "2", "--solver-steps", "6",
+                          "--broad-phase", "sweep-1", "--simplex", "barycentric", "--integrator", "symplectic-euler",
+                          "--width", "4", "--no-sleep"});
+    EXPECT_EQ(json["steps"], 60);
+    EXPECT_NEAR(json["dt"].get<double>(), 1.0 / 120.0, 1e-12);
+    EXPECT_EQ(json["threads"], 2);
+    EXPECT_EQ(json["width"], 4);
+    EXPECT_EQ(json["broad_phase"], "sweep-1");
+    EXPECT_GT(json["contacts"], 0);
+    EXPECT_GE(json["bodies"].size(), 4u);
+}
+
+TEST(Run, StepsAreSecondsOverDtRounded) {
+    EXPECT_EQ(run_json({"stack:1", "--seconds", "0.05"})["steps"], 3);
+    EXPECT_EQ(run_json({"stack:1", "--seconds", "0.1", "--dt", "0.03"})["steps"], 3);
+    EXPECT_EQ(run_json({"stack:1", "--seconds", "0"})["steps"], 0);
+    EXPECT_EQ(run_json({"stack:1", "--seconds", "1/2"})["steps"], 30);
+}
+
+TEST(Run, SameHashForThreadsWidthsAndBroadPhases) {
+    std::vector<std::string> run{"scenes/files/playground.gltf", "--seconds", "1"};
+    auto hash = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), run.begin(), run.end());
+        return run_json(options)["hash"].get<std::string>();
+    };
+    std::string expected = hash({});
+    EXPECT_EQ(hash({"--threads", "3", "--width", "1"}), expected);
+    EXPECT_EQ(hash({"--broad-phase", "all-pairs", "--width", "4"}), expected);
+}
+
+TEST(Run, JsonToFileBesideTheText) {
+    std::string file = scratch("summary.json");
+    Outcome outcome = lendulet({"run", "stack:2", "--seconds", "0.2", "--json", file});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("state hash"), std::string::npos);
+    std::ifstream in(file);
+    EXPECT_EQ(Json::parse(in)["steps"], 12);
+}
+
+TEST(Run, QuietPrintsNothing) {
+    Outcome outcome = lendulet({"run", "scenes/files/joints.gltf", "--seconds", "0.1", "--quiet"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(outcome.out + outcome.err, "");
+    outcome = lendulet({"run", "scenes/files/joints.gltf", "--seconds", "0.1"});
+    EXPECT_NE(outcome.err.find("warning: nodes["), std::string::npos);
+}
+
+TEST(Run, RecordingIsDescribedByInfo) {
+    std::string file = scratch("recording");
+    Json json = run_json({"scenes/files/playground.gltf", "--seconds", "0.5", "--record", file});
+    Outcome info = lendulet({"info", file});
+    EXPECT_EQ(info.exit_code, 0) << info.err;
+    EXPECT_NE(info.out.find("30 of 0.0166667 s"), std::string::npos) << info.out;
+    EXPECT_NE(info.out.find(json["hash"].get<std::string>()), std::string::npos) << info.out;
+}
+
+TEST(Run, PlaygroundDoesItsTricks) {
+    Json json = run_json({"scenes/files/playground.gltf", "--seconds", "8"});
+    auto body = [&](const std::string& name) {
+        for (const Json& b : json["bodies"]) {
+            if (b["name"] == name) return b;
+        }
+        ADD_FAILURE() << "no " << name;
+        return Json();
+    };
+    auto upright = [&](const std::string& name) {  // the y component of the body's y axis
+        auto q = body(name)["orientation"].get<std::vector<double>>();
+        return 1.0 - 2.0 * (q[0] * q[0] + q[2] * q[2]);
+    };
+    EXPECT_LT(upright("Domino_1"), 0.8);
+    EXPECT_LT(upright("Domino_12"), 0.8);
+    EXPECT_NEAR(body("Crate")["position"][1].get<double>(), 2.35, 0.05);  // on the net
+    EXPECT_NEAR(body("Ghost")["position"][1].get<double>(), 0.3, 0.05);   // through it
+    EXPECT_LT(std::abs(body("Brick_5_2")["position"][1].get<double>()), 1.7);
+    bool goal = false;
+    for (const Json& t : json["triggers"]) goal |= t["trigger"] == "Goal" && t["other"] == "Thrown";
+    EXPECT_TRUE(goal) << json["triggers"];
+    EXPECT_EQ(json["warnings"].size(), 0u) << json["warnings"];
+}
+
+TEST(Run, WithoutPhysicsIsAnEmptyWorldWithAWarning) {
+    std::string file = scratch("plain.gltf");
+    std::ofstream(file) << R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"name":"a"}]})";
+    Json json = run_json({file, "--seconds", "0.1"});
+    EXPECT_EQ(json["bodies"].size(), 0u);
+    ASSERT_EQ(json["warnings"].size(), 1u);
+    EXPECT_EQ(json["scene"], file);
+}
+
+TEST(Run, InterruptEndsWithTheSummary) {
+    Outcome outcome = lendulet({"run", "stack:5", "--seconds", "100000", "--json", "-"}, 400);
+    EXPECT_EQ(outcome.exit_code, 0);
+    Json json = Json::parse(outcome.out);
+    EXPECT_GT(json["steps"], 0);
+    EXPECT_LT(json["steps"], 6000000);
+}
+
+TEST(Program, HelpVersionAndScenes) {
+    Outcome help = lendulet({"run", "--help"});
+    EXPECT_EQ(help.exit_code, 0);
+    for (const char* option : {"--seconds", "--dt", "--threads", "--solver-steps", "--broad-phase", "--simplex",
+                               "--integrator", "--width", "--no-sleep", "--json", "--record", "--quiet"}) {
+        EXPECT_NE(help.out.find(option), std::string::npos) << option;
+    }
+    EXPECT_EQ(lendulet({"--version"}).out.rfind("lendulet ", 0), 0u);
+    Outcome scenes = lendulet({"scenes"});
+    EXPECT_EQ(scenes.exit_code, 0);
+    EXPECT_NE(scenes.out.find("box_pile:"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lendulet::test
