@@ -1,3 +1,5 @@
+// The expanding polytope: a first tetrahedron, expansion at the nearest face, and two finishes for round differences,
+// whose surface no polytope reaches. In: a simplex of GJK that holds the origin. Out: depth, normal, witness points.
 #include "collision/epa.h"
 
 #include "collision/epa_polytope.h"
@@ -133,7 +135,7 @@ struct SmoothMinimum {
     }
 };
 
-// Where curved minima lie too near to each other for the polytope to tell, one is made exact by descent: seen from
+// Where minima lie too near to each other for a polytope of this size to tell, one is made exact by descent: seen from
 // outside, a little beyond the surface along the normal, the nearest point of the difference has a normal that needs no
 // more depth. With o = (h(n) + clearance) n and n' the normal there, h(n') <= |o| - clearance = h(n). Nearly round
 // differences make these steps short, so each round starts as much farther on as the last one came, while that pays.
@@ -231,9 +233,9 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
         bool last = proven || !(gap > tolerance) || expansions == max_expansions ||
                     (gap < repeated * size && polytope.holds(p.y)) || !polytope.expand(f, p);
         if (!last) continue;
-        if (difference.curved && !proven && gap > tolerance)
+        if (!proven && gap > (difference.curved ? tolerance : repeated * size)) {
             result = descend_from_faces(difference, polytope, expansions);
-        else {
+        } else {
             result = {maximum(upper, lower), n, {}, {}, gap, expansions};
             foot_on_face(difference, polytope, f, tolerance, result);
         }

@@ -70,7 +70,7 @@ TEST(GjkCurved, NormalsOfPointsAgreeWithTheClosedForm) {
         Transform t = place(random, a, b, random.log_uniform(1e-5f, 1.0f));
         oracle::Vec p = wide(t.translation);
         // Gradient of the closed form by central differences.
-        oracle::Real h = 1e-7L, d = oracle::signed_distance(*a.curved, p);
+        oracle::Real h = 1e-9L, d = oracle::signed_distance(*a.curved, p);
         if (d < 1e-5L) continue;
         auto along = [&](oracle::Vec step) {
             return (oracle::signed_distance(*a.curved, p + step) - oracle::signed_distance(*a.curved, p - step)) /

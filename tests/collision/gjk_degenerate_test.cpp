@@ -198,6 +198,27 @@ TEST(GjkDegenerate, HullsFarFromTheirOrigin) {
     });
 }
 
+// Many faces at nearly one depth: more than the polytope has expansions for.
+TEST(GjkDegenerate, RoundHullsInsideEachOther) {
+    auto ball = [](Random& random, int corners) {
+        std::vector<Vec3> points;
+        for (int i = 0; i < corners; ++i) points.push_back(random.direction());
+        return make_hull(points);
+    };
+    auto make = [&](Random& random, int corners) {
+        Core a = ball(random, corners), b = ball(random, corners);
+        return Case{a, b, {random.log_uniform(1e-4f, 0.3f) * random.direction(), random.rotation()}};
+    };
+    run_class("round hulls", cases(30), [&](Random& random) { return make(random, 16); });
+    Tally tally("rounder hulls");  // too many directions for the oracle
+    Random random(18);
+    for (int i = 0; i < cases(200); ++i) {
+        Case c = make(random, 64);
+        tally.certify(c.a, c.b, c.t, query(c.a, c.b, c.t, both_methods[i % 2]));
+    }
+    EXPECT_LE(tally.max_expansions, 64);
+}
+
 TEST(GjkDegenerate, NormalsOfFlatDifferencesAreChosenAlike) {
     for (SimplexSolver method : both_methods) {
         Core point = make_point(), segment = make_segment(1.0f);
