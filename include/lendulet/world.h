@@ -143,7 +143,8 @@ public:
     JointState joint(JointId id) const;
 
     // --- simulation
-    // Advances by dt seconds (0 .. 1; longer steps are cut into equal ones of at most 1 s). dt = 0 does nothing.
+    // Advances by dt seconds (0 .. 1000; longer steps than 1 s are cut into equal ones of at most 1 s). dt = 0 does
+    // nothing.
     // Errors: bad_time_step.
     Status update(float dt);
     Status set_gravity(Vec3 gravity);

@@ -38,9 +38,12 @@ Vec3 BodyStore::velocity(uint32_t slot) const {
 
 Vec3 BodyStore::angular_velocity(uint32_t slot) const {
     const BodyMomenta& m = momenta[slot];
-    if (info[slot].type == BodyType::kinematic) return m.L;
+    return info[slot].type == BodyType::kinematic ? m.L : angular_velocity_of(slot, m.L);
+}
+
+Vec3 BodyStore::angular_velocity_of(uint32_t slot, Vec3 L) const {
     Quat q = pose[slot].orientation;
-    return rotate(q, multiply(mass[slot].inverse_inertia, rotate_inverse(q, m.L)));
+    return rotate(q, multiply(mass[slot].inverse_inertia, rotate_inverse(q, L)));
 }
 
 SymMat3 BodyStore::inverse_inertia_world(uint32_t slot) const {

@@ -82,6 +82,8 @@ struct BodyStore {
     // v = p / m and w = R I^-1 R^T L (thesis 3.1, 3.2); the given ones for kinematic bodies.
     Vec3 velocity(uint32_t slot) const;
     Vec3 angular_velocity(uint32_t slot) const;
+    // What w would be with angular momentum L.
+    Vec3 angular_velocity_of(uint32_t slot, Vec3 L) const;
     SymMat3 inverse_inertia_world(uint32_t slot) const;
     // Theta w: R I R^T w.
     Vec3 inertia_times(uint32_t slot, Vec3 w) const;

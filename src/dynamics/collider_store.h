@@ -32,6 +32,7 @@ inline bool filters_match(const CollisionFilter& a, const CollisionFilter& b) {
 struct ColliderInfo {
     uint32_t body = no_slot, next = no_slot;  // the body's next collider
     bool is_trigger = false;
+    bool boxed = false;   // in the broad phase since the last step; a new owner of a slot is not
     float radius = 0.0f;  // of a sphere about the shape's position that holds it
     CollisionFilter filter{};
     uint64_t user_data = 0;

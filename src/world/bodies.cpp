@@ -125,7 +125,7 @@ Status set_mass(BodyStore& bodies, uint32_t slot, const MassProperties& m, Princ
 
 // Positive, and each no larger than the other two together (it is a sum of squares of distances).
 Status check_inertia(Vec3 i, const char* call) {
-    bool positive = is_finite(i) && min_component(i) > 0.0f;
+    bool positive = is_finite(i) && min_component(i) > 1e-36f;  // below, the inverse would be infinite
     float sum = i.x + i.y + i.z, most = max_component(i);
     if (!positive || 2.0f * most > sum * (1.0f + 1e-5f))
         return refused(ErrorCode::bad_inertia, call,
@@ -207,6 +207,9 @@ Result<BodyId> World::add_rigid_body(const RigidBodyDef& def) {
         mass = m.value();
         principal = principal_axes(mass.inertia);
         if (Status s = check_inertia(principal.inertia, call); !s) return s.error();
+        Vec3 spin{length(def.angular_velocity), 0.0f, 0.0f};
+        if (!is_finite(mass.mass * def.velocity) || !is_finite(max_component(principal.inertia) * spin))
+            return refused(ErrorCode::non_finite, call, "momentum and angular momentum must be finite");
     }
     // Nothing can be refused from here on.
     for (size_t i = 0; i < defs.size(); ++i)
@@ -261,6 +264,7 @@ Status World::remove_body(BodyId id) {
         world.pairs.remove_collider(c);
         world.colliders.shape[c] = Sphere{};  // lets go of shared hulls and meshes
         world.colliders.info[c].body = no_slot;
+        world.colliders.info[c].boxed = false;
         world.colliders.slots.remove(c);
         c = next;
     }

@@ -14,7 +14,7 @@ void set_box(BroadBox& box, uint32_t index, Position lower, Position upper) {
 }
 
 // Box of a collider now, grown by `grow` and swept along `sweep`.
-void bound_collider(const WorldData& world, uint32_t slot, Vec3 sweep, float grow, BroadBox& box) {
+void bound_collider(WorldData& world, uint32_t slot, Vec3 sweep, float grow, BroadBox& box) {
     const ColliderPlace& place = world.colliders.place[slot];
     CentredBox b = bounds(world.colliders.geometry[slot], place.rotation);
     Position centre = world.bodies.pose[world.colliders.info[slot].body].position + (place.arm + b.centre);
@@ -23,6 +23,7 @@ void bound_collider(const WorldData& world, uint32_t slot, Vec3 sweep, float gro
     lower = lower + minimum(sweep, Vec3{});
     upper = upper + maximum(sweep, Vec3{});
     set_box(box, slot, lower, upper);
+    world.colliders.info[slot].boxed = true;
 }
 
 void bound_moving(WorldData& world, uint32_t slot, float dt, BroadBox& box) {
@@ -33,7 +34,9 @@ void bound_moving(WorldData& world, uint32_t slot, float dt, BroadBox& box) {
     Vec3 sweep;
     if (!world.bodies.info[body].asleep) {
         sweep = dt * world.bodies.velocity(body);
-        float fall = 0.5f * dt * dt * length(world.config.gravity) * absolute(world.bodies.info[body].gravity_factor);
+        float fall = 0.5f * dt *
+                     minimum(dt * length(world.config.gravity) * absolute(world.bodies.info[body].gravity_factor),
+                             2.0f * max_speed);
         // A turning shape reaches no farther than its radius about the body's centre, nor than the arc it runs through.
         float reach = length(world.colliders.place[slot].arm) + info.radius;
         float turn = dt * length(world.bodies.angular_velocity(body));

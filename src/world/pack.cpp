@@ -1,6 +1,7 @@
 // Stages 5 and 7: awake bodies and their contacts into the solver's packed arrays, and back.
 #include "dynamics/free_flight.h"
 #include "math/decay.h"
+#include "world/validate.h"
 #include "world/world_data.h"
 
 namespace lendulet {
@@ -10,18 +11,13 @@ constexpr int bodies_per_task = 256;
 
 void put(float* p, Vec3 v) { p[0] = v.x, p[1] = v.y, p[2] = v.z; }
 Vec3 get(const float* p) { return {p[0], p[1], p[2]}; }
-bool finite(Vec3 v) { return length_squared(v) < 3e38f; }  // false for NaN and infinity
-
-Vec3 acceleration(const WorldData& world, uint32_t slot) {
-    const BodyStore& b = world.bodies;
-    return b.info[slot].gravity_factor * world.config.gravity + b.mass[slot].inverse_mass * b.forces[slot].force;
-}
 
 void pack_body(WorldData& world, size_t i, float h) {
     const BodyStore& bodies = world.bodies;
     uint32_t slot = world.awake[i];
     const BodyInfo& info = bodies.info[slot];
     const BodyMass& mass = bodies.mass[slot];
+    const float dt = h * static_cast<float>(world.config.solver_steps);
     size_t k = i + reserved_bodies;
     bool dynamic = info.type == BodyType::dynamic;
     BodyStart start{};
@@ -54,8 +50,8 @@ void pack_body(WorldData& world, size_t i, float h) {
         m.angular_loss = angular.loss;
         m.anisotropy = mass.anisotropy;
         put(m.angular_momentum, bodies.momenta[slot].L);
-        put(m.acceleration, linear.mean * acceleration(world, slot));
-        put(m.torque, angular.mean * bodies.forces[slot].torque);
+        put(m.acceleration, linear.mean * acceleration(world, slot, dt));
+        put(m.torque, angular.mean * torque(world, slot, dt));
         put(m.change_v, bodies.change[slot].v);
         put(m.change_L, bodies.change[slot].L);
     }
@@ -81,8 +77,8 @@ void fly(WorldData& world, uint32_t slot, float dt) {
     BodyStore& bodies = world.bodies;
     const BodyInfo& info = bodies.info[slot];
     const BodyMass& mass = bodies.mass[slot];
-    FlightBody body{mass.inverse_mass,          mass.inverse_inertia, mass.mass * acceleration(world, slot),
-                    bodies.forces[slot].torque, info.linear_damping,  info.angular_damping};
+    FlightBody body{mass.inverse_mass,       mass.inverse_inertia, mass.mass * acceleration(world, slot, dt),
+                    torque(world, slot, dt), info.linear_damping,  info.angular_damping};
     FlightState s{{}, bodies.pose[slot].orientation, bodies.momenta[slot].p, bodies.momenta[slot].L};
     float h = dt / static_cast<float>(world.config.solver_steps);
     for (int i = 0; i < world.config.solver_steps; ++i) s = advance(s, body, world.config.integrator, h);
@@ -91,18 +87,6 @@ void fly(WorldData& world, uint32_t slot, float dt) {
     bodies.pose[slot].orientation = s.q;
     momenta.p = s.p;
     momenta.L = s.L;
-}
-
-// Cuts speeds beyond the limit; true where one was.
-bool cap_speed(WorldData& world, uint32_t slot) {
-    BodyMomenta& m = world.bodies.momenta[slot];
-    const BodyMass& mass = world.bodies.mass[slot];
-    bool capped = false;
-    float speed = length(mass.inverse_mass * m.p);
-    if (speed > max_speed) m.p = (max_speed / speed) * m.p, m.p_low = {}, capped = true;
-    float spin = length(world.bodies.angular_velocity(slot));
-    if (spin > max_angular_speed) m.L = (max_angular_speed / spin) * m.L, capped = true;
-    return capped;
 }
 
 void unpack_body(WorldData& world, size_t i, float dt) {
@@ -123,8 +107,8 @@ void unpack_body(WorldData& world, size_t i, float dt) {
     if (!dynamic) return;
     if (m.free > 0.0f) {  // exactly: m g dt, not what is left of it after adding to a large velocity
         Decay whole = decay(info.linear_damping, dt);
-        add_momentum(momenta,
-                     (whole.mean * dt * bodies.mass[slot].mass) * acceleration(world, slot) - whole.loss * momenta.p);
+        add_momentum(momenta, (whole.mean * dt * bodies.mass[slot].mass) * acceleration(world, slot, dt) -
+                                  whole.loss * momenta.p);
     } else {
         add_momentum(momenta, bodies.mass[slot].mass * get(s.v));
     }
@@ -171,7 +155,7 @@ void pack_contacts(WorldData& world) {
     }
 }
 
-void unpack_bodies(WorldData& world, float dt) {
+void unpack_bodies(WorldData& world, float dt, bool forces_end) {
     BodyStore& bodies = world.bodies;
     world.tasks.for_each(world.awake.count(), bodies_per_task, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i) {
@@ -179,10 +163,10 @@ void unpack_bodies(WorldData& world, float dt) {
             Pose before = bodies.pose[slot];
             unpack_body(world, static_cast<size_t>(i), dt);
             BodyInfo& info = bodies.info[slot];
-            info.capped = info.type == BodyType::dynamic && cap_speed(world, slot);
+            info.capped |= info.type == BodyType::dynamic && cap_speed(bodies, slot);
             const BodyMomenta& m = bodies.momenta[slot];
             const Pose& pose = bodies.pose[slot];
-            bool sound = finite(from_origin(pose.position)) && finite(m.p) && finite(m.L) &&
+            bool sound = is_finite(from_origin(pose.position)) && is_finite(m.p) && is_finite(m.L) &&
                          dot(pose.orientation, pose.orientation) < 2.0f;
             info.contained = !sound;
             if (!sound) {  // put back and stopped, so that it cannot spoil others
@@ -190,8 +174,7 @@ void unpack_bodies(WorldData& world, float dt) {
                 bodies.momenta[slot] = {};
                 bodies.change[slot] = {};
             }
-            bodies.forces[slot] = {};
-            info.has_forces = false;
+            if (forces_end) bodies.forces[slot] = {}, info.has_forces = false;
         }
     });
     world.statistics.capped_bodies = world.statistics.contained_bodies = 0;

@@ -28,7 +28,7 @@ uint32_t nearest_of_all(const WorldData& world, const float origin[3], const flo
     t = 1.0f;
     for (const Array<BroadBox>* set : {&world.moving_boxes, &world.fixed_boxes})
         for (const BroadBox& box : *set) {
-            float e = world.colliders.info[box.index].body == no_slot ? 2.0f : entry(box, origin, translation);
+            float e = world.colliders.info[box.index].boxed ? entry(box, origin, translation) : 2.0f;
             if (e < t || (e == t && e <= 1.0f && box.index < best)) t = e, best = box.index;
         }
     return best;
@@ -43,7 +43,7 @@ int World::query_boxes(const Aabb& box, ColliderId* out, int capacity) const {
     std::sort(hits.begin(), hits.end());  // order: total
     int count = 0;
     for (uint32_t slot : hits) {
-        if (data_->colliders.info[slot].body == no_slot) continue;
+        if (!data_->colliders.info[slot].boxed) continue;
         if (count < capacity) out[count] = data_->colliders.id(slot);
         ++count;
     }
@@ -56,7 +56,7 @@ Result<BoxHit> World::nearest_box(Position origin, Vec3 translation) const {
     if (!(length_squared(translation) > 0.0f)) return Error{ErrorCode::bad_query, "nearest_box: the ray has no length"};
     float o[3] = {origin.x, origin.y, origin.z}, d[3] = {translation.x, translation.y, translation.z}, t = 0.0f;
     uint32_t slot = data_->broad_phase.ray(o, d, 1.0f, t);
-    if (slot != no_box && data_->colliders.info[slot].body == no_slot) slot = nearest_of_all(*data_, o, d, t);
+    if (slot != no_box && !data_->colliders.info[slot].boxed) slot = nearest_of_all(*data_, o, d, t);
     if (slot == no_box) return BoxHit{{}, {}, 1.0f};
     return BoxHit{data_->bodies.id(data_->colliders.info[slot].body), data_->colliders.id(slot), t};
 }

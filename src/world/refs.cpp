@@ -98,20 +98,20 @@ Status RigidBodyRef::set_pose(Position position, Quat orientation) {
     return {};
 }
 Status RigidBodyRef::set_velocity(Vec3 v) {
-    Status s = checked(is_finite(v), "set_velocity", "velocity");
+    Vec3 p = type() == BodyType::kinematic ? v : world_->bodies.mass[slot_].mass * v;
+    Status s = checked(is_finite(v) && is_finite(p), "set_velocity", "velocity and momentum");
     if (!s) return s;
-    bool kinematic = type() == BodyType::kinematic;
     BodyMomenta& m = world_->bodies.momenta[slot_];
-    m.p = kinematic ? v : world_->bodies.mass[slot_].mass * v;
+    m.p = p;
     m.p_low = {};
     wake();
     return {};
 }
 Status RigidBodyRef::set_angular_velocity(Vec3 w) {
-    Status s = checked(is_finite(w), "set_angular_velocity", "angular velocity");
+    Vec3 L = type() == BodyType::kinematic ? w : world_->bodies.inertia_times(slot_, w);
+    Status s = checked(is_finite(w) && is_finite(L), "set_angular_velocity", "angular velocity and momentum");
     if (!s) return s;
-    bool kinematic = type() == BodyType::kinematic;
-    world_->bodies.momenta[slot_].L = kinematic ? w : world_->bodies.inertia_times(slot_, w);
+    world_->bodies.momenta[slot_].L = L;
     wake();
     return {};
 }
@@ -131,36 +131,41 @@ Status RigidBodyRef::set_angular_momentum(Vec3 L) {
     return {};
 }
 Status RigidBodyRef::apply_impulse(Vec3 impulse, Position point) {
-    Status s = checked(is_finite(impulse) && is_finite(from_origin(point)), "apply_impulse", "impulse and point");
-    if (!s || type() != BodyType::dynamic) return s;
     BodyMomenta& m = world_->bodies.momenta[slot_];
-    m.p += impulse;  // p' = p + J, L' = L + (x_J - x) x J, thesis 3.3.1
-    m.L += cross(point - centre_of_mass(), impulse);
+    // p' = p + J, L' = L + (x_J - x) x J, thesis 3.3.1
+    Vec3 p = m.p + impulse, L = m.L + cross(point - centre_of_mass(), impulse);
+    Status s = checked(is_finite(p) && is_finite(L), "apply_impulse", "impulse, point and what they lead to");
+    if (!s || type() != BodyType::dynamic) return s;
+    m.p = p;
+    m.L = L;
     wake();
     return {};
 }
 Status RigidBodyRef::apply_impulse(Vec3 impulse) { return apply_impulse(impulse, centre_of_mass()); }
 Status RigidBodyRef::apply_angular_impulse(Vec3 angular_impulse) {
-    Status s = checked(is_finite(angular_impulse), "apply_angular_impulse", "angular impulse");
+    Vec3 L = world_->bodies.momenta[slot_].L + angular_impulse;
+    Status s = checked(is_finite(L), "apply_angular_impulse", "angular impulse and momentum");
     if (!s || type() != BodyType::dynamic) return s;
-    world_->bodies.momenta[slot_].L += angular_impulse;
+    world_->bodies.momenta[slot_].L = L;
     wake();
     return {};
 }
 Status RigidBodyRef::apply_force(Vec3 force, Position point) {
-    Status s = checked(is_finite(force) && is_finite(from_origin(point)), "apply_force", "force and point");
+    BodyForces& sum = world_->bodies.forces[slot_];
+    Vec3 total = sum.force + force, torque = sum.torque + cross(point - centre_of_mass(), force);
+    Status s = checked(is_finite(total) && is_finite(torque), "apply_force", "force, point and the sum of forces");
     if (!s || type() != BodyType::dynamic) return s;
-    world_->bodies.forces[slot_].force += force;
-    world_->bodies.forces[slot_].torque += cross(point - centre_of_mass(), force);
+    sum = {total, torque};
     world_->bodies.info[slot_].has_forces = true;
     wake();
     return {};
 }
 Status RigidBodyRef::apply_force(Vec3 force) { return apply_force(force, centre_of_mass()); }
 Status RigidBodyRef::apply_torque(Vec3 torque) {
-    Status s = checked(is_finite(torque), "apply_torque", "torque");
+    Vec3 total = world_->bodies.forces[slot_].torque + torque;
+    Status s = checked(is_finite(total), "apply_torque", "torque and the sum of torques");
     if (!s || type() != BodyType::dynamic) return s;
-    world_->bodies.forces[slot_].torque += torque;
+    world_->bodies.forces[slot_].torque = total;
     world_->bodies.info[slot_].has_forces = true;
     wake();
     return {};

@@ -7,7 +7,8 @@
 namespace lendulet {
 namespace {
 
-constexpr float longest_step = 1.0f;  // s; longer ones are cut
+constexpr float longest_step = 1.0f;       // s; longer ones are cut
+constexpr float longest_update = 1000.0f;  // s
 
 // Time since the last lap, booked to a stage.
 class StageClock {
@@ -30,12 +31,14 @@ private:
     Clock::time_point last_ = Clock::now();
 };
 
-void step(WorldData& world, float dt) {
+// `last`: the step is the last part of an update, after which applied forces end.
+void step(WorldData& world, float dt, bool last) {
     TaskPool::Session session(world.tasks);
     StageClock clock(world.statistics);
     const SolverSettings settings{dt, world.config.solver_steps, length(world.config.gravity)};
     const float h = dt / static_cast<float>(settings.substeps);
 
+    limit_motion(world);
     update_bounds(world, dt);
     clock.lap(Stage::bounds);
     find_box_pairs(world);
@@ -60,7 +63,7 @@ void step(WorldData& world, float dt) {
     world.solver.store(world.tasks, world.records.data());
     world.solver.store_joints(world.tasks);
     unpack_joints(world, h);
-    unpack_bodies(world, dt);
+    unpack_bodies(world, dt, last);
     finish_step(world, dt);
     clock.lap(Stage::finish);
 }
@@ -95,13 +98,16 @@ Status World::update(float dt) {
     WorldData& world = *data_;
     if (!is_finite(dt) || dt < 0.0f)
         return Error{ErrorCode::bad_time_step, "update: dt is " + text(dt) + ", must be finite and not negative"};
+    if (dt > longest_update)
+        return Error{ErrorCode::bad_time_step,
+                     "update: dt is " + text(dt) + ", must be at most " + text(longest_update)};
     if (world.in_step) return Error{ErrorCode::locked, "update: called from inside a step"};
     if (dt == 0.0f) return {};
     world.in_step = true;
     int parts = 1;
-    while (dt > longest_step * static_cast<float>(parts) && parts < 1000) ++parts;
+    while (dt > longest_step * static_cast<float>(parts)) ++parts;
     float part = minimum(dt / static_cast<float>(parts), longest_step);
-    for (int i = 0; i < parts; ++i) step(world, part);
+    for (int i = 0; i < parts; ++i) step(world, part, i == parts - 1);
     world.in_step = false;
     return {};
 }

@@ -10,10 +10,20 @@ namespace {
 
 TaskPool::Hook task_hook(const WorldConfig& c) { return {c.tasks.user, c.tasks.workers, c.tasks.parallel_for}; }
 
+constexpr float max_gravity = 1e9f;  // m/s^2; its square is still far from overflow
+
 Error bad_config(std::string what) { return {ErrorCode::bad_config, "build: " + std::move(what)}; }
 
+Status check_gravity(Vec3 g, const char* call) {
+    if (!is_finite(g)) return Error{ErrorCode::non_finite, std::string(call) + ": gravity must be finite"};
+    if (max_component(absolute(g)) > max_gravity)
+        return Error{ErrorCode::bad_config,
+                     std::string(call) + ": gravity must not be beyond " + text(max_gravity) + " m/s^2"};
+    return {};
+}
+
 Status check_config(const WorldConfig& c) {
-    if (!is_finite(c.gravity)) return Error{ErrorCode::non_finite, "build: gravity must be finite"};
+    if (Status s = check_gravity(c.gravity, "build"); !s) return s;
     if (c.solver_steps < 1 || c.solver_steps > 64)
         return bad_config("solver steps are " + std::to_string(c.solver_steps) + ", must be 1 to 64");
     if (!(c.rigid_separation_speed > 0.0f) || !is_finite(c.rigid_separation_speed))
@@ -88,10 +98,13 @@ StaticBodyRef World::get_static(BodyId id) const {
 }
 
 Status World::set_gravity(Vec3 gravity) {
-    if (!is_finite(gravity)) return Error{ErrorCode::non_finite, "set_gravity: gravity must be finite"};
+    if (Status s = check_gravity(gravity, "set_gravity"); !s) return s;
     data_->config.gravity = gravity;
-    for (uint32_t slot : data_->bodies.slots.order())
-        if (data_->bodies.info[slot].asleep) wake_body(*data_, slot);
+    for (uint32_t slot : data_->bodies.slots.order()) {
+        BodyInfo& info = data_->bodies.info[slot];
+        info.asleep = false;
+        info.still_time = 0.0f;
+    }
     return {};
 }
 const WorldConfig& World::config() const { return data_->config; }

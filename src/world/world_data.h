@@ -69,6 +69,7 @@ struct WorldData {
 };
 
 // The stages of a step, in order; each reads what those before it left.
+void limit_motion(WorldData& world);
 void update_bounds(WorldData& world, float dt);
 void find_box_pairs(WorldData& world);
 void match_pairs(WorldData& world);
@@ -78,7 +79,7 @@ void pack_bodies(WorldData& world, float h);
 void pack_contacts(WorldData& world);
 void pack_joints(WorldData& world, float h);
 void unpack_joints(WorldData& world, float h);
-void unpack_bodies(WorldData& world, float dt);
+void unpack_bodies(WorldData& world, float dt, bool forces_end);
 void finish_step(WorldData& world, float dt);
 
 // Removes the joints of a body that is about to be removed.
@@ -86,6 +87,14 @@ void remove_joints_of(WorldData& world, uint32_t body);
 
 // Wakes a body and everything that rests on it.
 void wake_body(WorldData& world, uint32_t slot);
+
+// What gravity, forces and torques do to a body, cut to what takes it to twice the greatest speed within `dt`.
+Vec3 acceleration(const WorldData& world, uint32_t slot, float dt);
+Vec3 torque(const WorldData& world, uint32_t slot, float dt);
+// v, or the shorter vector of length `most` along it; finite, also where v is not.
+Vec3 limited(Vec3 v, float most);
+// Cuts p and L to the greatest speeds below; true where one was too large.
+bool cap_speed(BodyStore& bodies, uint32_t slot);
 
 // Speeds beyond these are cut (and counted): positions in single precision do not resolve such motion.
 inline constexpr float max_speed = 1e4f;          // m/s
