@@ -74,7 +74,7 @@ LENDULET_FORCE_INLINE constexpr Vec3T<F> multiply(Vec3T<F> a, Vec3T<F> b) {
 }
 
 LENDULET_FORCE_INLINE float square_root(float a) { return __builtin_sqrtf(a); }
-LENDULET_FORCE_INLINE constexpr float absolute(float a) { return a < 0.0f ? -a : a; }
+LENDULET_FORCE_INLINE constexpr float absolute(float a) { return __builtin_fabsf(a); }  // clears the sign of -0 too
 LENDULET_FORCE_INLINE constexpr float maximum(float a, float b) { return a > b ? a : b; }
 LENDULET_FORCE_INLINE constexpr float minimum(float a, float b) { return a < b ? a : b; }
 LENDULET_FORCE_INLINE constexpr float clamp(float a, float lo, float hi) { return minimum(maximum(a, lo), hi); }

@@ -95,8 +95,8 @@ LENDULET_FORCE_INLINE void update_axes(JointRow<W, C>& c, QuatT<Wide<float, W>> 
         F size = length(swing);
         c.direction[0] = select(size > splat<F>(1e-6f), (one / maximum(size, splat<F>(1e-6f))) * swing, axes.y);
         c.direction[1] = (one / maximum(one + dot(axes.x, xb), splat<F>(0.02f))) * (axes.x + xb);
-        c.row[0].coordinate = two * arc_tangent2(square_root(q.y * q.y + q.z * q.z), square_root(q.x * q.x + q.w * q.w));
-        c.row[1].coordinate = two * arc_tangent2(q.x, q.w);
+        c.row[0].coordinate = two * arc_tangent2<F>(square_root(q.y * q.y + q.z * q.z), square_root(q.x * q.x + q.w * q.w));
+        c.row[1].coordinate = two * arc_tangent2<F>(q.x, q.w);
     } else {
         c.direction[0] = axes.y;
         c.direction[1] = axes.z;
@@ -110,7 +110,7 @@ LENDULET_FORCE_INLINE void update_axes(JointRow<W, C>& c, QuatT<Wide<float, W>> 
         c.error[1] = two * q.z;
         c.error[2] = two * q.x;
     }
-    if constexpr (C == JointClass::driven_hinge) c.row[0].coordinate = two * arc_tangent2(q.x, q.w);
+    if constexpr (C == JointClass::driven_hinge) c.row[0].coordinate = two * arc_tangent2<F>(q.x, q.w);
     if constexpr (S::bounded > 0 && !S::slider) {
         // Whole turns are counted from the middle of the bounds, so that a range may reach beyond half a turn.
         auto& row = c.row[S::bounded - 1];

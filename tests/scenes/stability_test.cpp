@@ -72,7 +72,9 @@ TEST(Stability, PileFallsAsleepInItsContainer) {
             EXPECT_LT(absolute(p.x), inner) << name << ' ' << i;
             EXPECT_LT(absolute(p.z), inner) << name << ' ' << i;
         }
-        if (name[0] == 'b') EXPECT_EQ(world.statistics().awake_bodies, 0);
+        if (name[0] == 'b') {
+            EXPECT_EQ(world.statistics().awake_bodies, 0);
+        }
     }
 }
 
