@@ -50,7 +50,8 @@ public:
         make_simplex(start);
         insert_pending();
         admit_all();
-        insert_pending();
+        do insert_pending();
+        while (find_overlooked());
         write(surface);
         return Rank::space;
     }
@@ -128,11 +129,32 @@ private:
         }
     }
     void offer(Facet& f, uint32_t p, double height) const {
-        if (slack_[p] > admitted_slack_) return;
+        if (height <= slack_[p] || slack_[p] > admitted_slack_) return;
         if (height > f.farthest_distance || (height == f.farthest_distance && p < f.farthest)) {
             f.farthest = p;
             f.farthest_distance = height;
         }
+    }
+
+    // Lists tell only the facet near which a point was last seen to stand out farthest. Around blades and needles
+    // another one can be farther below it: all facets are searched for the few points that are left on lists. Too much
+    // work only for huge clouds of near duplicates, whose facets are no blades.
+    bool find_overlooked() {
+        constexpr size_t affordable = 5'000'000;
+        std::vector<uint32_t> left, alive;
+        for (uint32_t id = 0; id < facets_.size(); ++id) {
+            if (!facets_[id].alive) continue;
+            alive.push_back(id);
+            for (uint32_t p = facets_[id].first; p != none; p = next_[p]) left.push_back(p);
+        }
+        if (left.size() * alive.size() > affordable) return false;
+        for (uint32_t id : alive) facets_[id].first = none;
+        fresh_.swap(alive);
+        for (uint32_t p : left) assign(p);
+        fresh_.swap(alive);
+        for (uint32_t id : alive)
+            if (facets_[id].farthest != none) pending_.push_back(id);
+        return !pending_.empty();
     }
 
     uint32_t add_facet(uint32_t a, uint32_t b, uint32_t c) {
@@ -172,7 +194,9 @@ private:
         pending_.insert(pending_.end(), fresh_.begin(), fresh_.end());
     }
 
-    // Puts a point on the list of the facet it stands out of farthest, or nowhere if that is within its slack.
+    // Puts a point on the list of the facet it stands out of farthest, or nowhere if it is inside. Points within their
+    // slack stay on the lists too: beyond a sharp edge, one that hardly stands out of either face can stand far out of
+    // a face that cuts the edge off later.
     void assign(uint32_t p) {
         uint32_t facet = fresh_[0];
         double height = distance(facets_[facet], p);
@@ -180,11 +204,9 @@ private:
             double d = distance(facets_[fresh_[i]], p);
             if (d > height) height = d, facet = fresh_[i];
         }
-        if (height <= slack_[p]) {
-            if (height <= 0.0) return;
-            climb(p, facet, height);
-            if (height <= slack_[p]) return;
-        }
+        constexpr double inside = 0.5;
+        if (height <= inside) return;
+        if (height <= slack_[p]) climb(p, facet, height);
         Facet& f = facets_[facet];
         next_[p] = f.first;
         f.first = p;

@@ -139,6 +139,26 @@ TEST(HullTest, NeedlesAndPlatesOfAspect1e4) {
     }
 }
 
+// Blades hardly thicker than what counts as flat: points beyond a sharp edge stand out of neither face, but of the one
+// that cuts the edge off later.
+TEST(HullTest, BladesHoldTheirPoints) {
+    std::mt19937 random(20);
+    int built = 0;
+    for (int i = 0; i < 2000; ++i) {
+        float thickness = std::ldexp(1.0f, -static_cast<int>(random() % 20));
+        std::vector<Vec3> points;
+        for (int k = 0; k < 60; ++k)
+            points.push_back(multiply({1, thickness, 1}, i % 2 == 0 ? random_vector(random) : random_unit(random)));
+        Vec3 offset = i % 3 == 0 ? Vec3{} : random_vector(random, i % 3 == 1 ? 10.0f : 2000.0f);
+        points = turned(points, random_rotation(random), offset);
+        Result<ConvexHull> hull = ConvexHull::from_points(points);
+        if (!hull.ok()) continue;  // flat
+        ++built;
+        expect_valid_hull(hull.value().data(), points);
+    }
+    EXPECT_GT(built, 1500);
+}
+
 // Thousands of points close to one face: the cone, the prism and the tilted grid that break tolerance-based builders.
 TEST(HullTest, NearlyFlatFaces) {
     std::mt19937 random(15);
