@@ -51,7 +51,7 @@ std::string body_name(const World& world, int index) {
     return own.empty() ? "body_" + std::to_string(index) : std::string(own);
 }
 
-RunObserver::RunObserver(const Scene& scene) : stage_ms_(stage_count) {
+RunObserver::RunObserver(const Scene& scene) {
     for (const auto& [id, name] : scene.collider_names) collider_names_[key_of(id)] = name;
     const World& world = scene.world;
     summary_.scene = scene.name;
@@ -62,10 +62,7 @@ RunObserver::RunObserver(const Scene& scene) : stage_ms_(stage_count) {
 
 void RunObserver::after_step(const Scene& scene) {
     const StepStatistics& statistics = scene.world.statistics();
-    total_ms_.push_back(static_cast<float>(statistics.total_ms));
-    for (int i = 0; i < stage_count; ++i) {
-        stage_ms_[static_cast<size_t>(i)].push_back(static_cast<float>(statistics.stage_ms[i]));
-    }
+    note_times(statistics);
     summary_.max_penetration = std::max<double>(summary_.max_penetration, statistics.max_penetration);
     ++summary_.steps;
     note_overlaps(scene);
@@ -94,13 +91,34 @@ void RunObserver::note_overlaps(const Scene& scene) {
     }
 }
 
+void RunObserver::note_times(const StepStatistics& statistics) {
+    constexpr size_t most = 1 << 20;
+    if (summary_.steps % stride_ != 0) return;
+    if (samples_.size() == most) {
+        for (size_t i = 0; i < most / 2; ++i) samples_[i] = samples_[2 * i];
+        samples_.resize(most / 2);
+        stride_ *= 2;
+        if (summary_.steps % stride_ != 0) return;
+    }
+    Sample sample{static_cast<float>(statistics.total_ms), {}};
+    for (int i = 0; i < stage_count; ++i) sample.stages[i] = static_cast<float>(statistics.stage_ms[i]);
+    samples_.push_back(sample);
+}
+
 StepTimes RunObserver::times() const {
+    auto column = [&](auto value) {
+        std::vector<float> out;
+        out.reserve(samples_.size());
+        for (const Sample& sample : samples_) out.push_back(value(sample));
+        return out;
+    };
     StepTimes out;
-    out.median = quantile(total_ms_, 0.5);
-    out.p99 = quantile(total_ms_, 0.99);
+    std::vector<float> totals = column([](const Sample& s) { return s.total; });
+    out.median = quantile(totals, 0.5);
+    out.p99 = quantile(std::move(totals), 0.99);
     for (int i = 0; i < stage_count; ++i) {
-        out.stage_medians.emplace_back(name_of(static_cast<Stage>(i)),
-                                       quantile(stage_ms_[static_cast<size_t>(i)], 0.5));
+        double median = quantile(column([&](const Sample& s) { return s.stages[i]; }), 0.5);
+        out.stage_medians.emplace_back(name_of(static_cast<Stage>(i)), median);
     }
     return out;
 }

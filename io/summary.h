@@ -59,13 +59,19 @@ public:
     RunSummary finish(const Scene& scene, double dt, double wall_seconds);
 
 private:
+    void note_times(const StepStatistics& statistics);
     void note_overlaps(const Scene& scene);
     StepTimes times() const;
 
     RunSummary summary_;
     double step_start_ = 0.0;  // the world's time before the step to come, s
-    std::vector<float> total_ms_;
-    std::vector<std::vector<float>> stage_ms_;
+    // Times of every stride-th step: the stride doubles whenever a million are there, so that a long run does not fill
+    // the memory.
+    struct Sample {
+        float total, stages[static_cast<int>(Stage::count)];
+    };
+    std::vector<Sample> samples_;
+    int64_t stride_ = 1;
     std::map<uint64_t, std::string> collider_names_;
     std::map<std::pair<std::string, uint64_t>, size_t> seen_;  // trigger's name and the other body's id
 };
