@@ -7,6 +7,8 @@ namespace {
 // by 1e-5 of their size, and the choice of points must not. Below the second, a point adds nothing to the support.
 constexpr float equal_depth = 5e-4f;
 constexpr float negligible_reach = 1e-3f;
+// Scores this close are a tie, which the fixed direction decides: regular polygons are full of them.
+constexpr float tie = 0.02f;
 
 // Twice the signed area of the triangle a, b, p.
 float area(const FacePoint& a, const FacePoint& b, const FacePoint& p) {
@@ -28,17 +30,23 @@ float size_of(const FacePoint* points, int count) {
     return maximum(u1 - u0, v1 - v0);
 }
 
-// Moves the best of points[from..count) by `score` to `from`; its score is returned.
+// The slope of the fixed direction is no ratio of small integers, so that the corners of usual polygons do not tie.
+float along_fixed_direction(const FacePoint& p) { return p.u + 0.618034f * p.v; }
+
+// Moves the best of points[from..count) by `score` to `from`; the highest score is returned. Ties go to the end of the
+// fixed direction for the first and third point and to its start for the others, so that symmetric outlines keep
+// symmetric points.
 template <class Score>
 float pick(FacePoint* points, int from, int count, Score&& score) {
-    int best = from;
     float best_score = score(points[from]);
-    for (int i = from + 1; i < count; ++i) {
-        float s = score(points[i]);
-        bool better = s > best_score;
-        best = better ? i : best;
-        best_score = better ? s : best_score;
-    }
+    for (int i = from + 1; i < count; ++i) best_score = maximum(best_score, score(points[i]));
+    float limit = best_score - tie * absolute(best_score);
+    float end = from % 2 == 0 ? 1.0f : -1.0f;
+    int best = -1;
+    for (int i = from; i < count; ++i)
+        if (score(points[i]) >= limit &&
+            (best < 0 || end * along_fixed_direction(points[i]) > end * along_fixed_direction(points[best])))
+            best = i;
     swap(points[from], points[best]);
     return best_score;
 }
@@ -55,8 +63,8 @@ int thin_points(FacePoint* points, int count) {
     for (int i = 1; i < count; ++i) deepest = minimum(deepest, points[i].separation);
     float limit = deepest + equal_depth * size;
     constexpr float lowest = -3e38f;
-    // The slope of the fixed direction is no ratio of small integers, so that the corners of usual polygons do not tie.
-    pick(points, 0, count, [&](const FacePoint& p) { return p.separation <= limit ? p.u + 0.618034f * p.v : lowest; });
+    pick(points, 0, count,
+         [&](const FacePoint& p) { return p.separation <= limit ? along_fixed_direction(p) : lowest; });
     const FacePoint a = points[0];
     float far = pick(points, 1, count,
                      [&](const FacePoint& p) { return (p.u - a.u) * (p.u - a.u) + (p.v - a.v) * (p.v - a.v); });
