@@ -8,7 +8,7 @@ namespace {
 constexpr float equal_depth = 5e-4f;
 constexpr float negligible_reach = 1e-3f;
 // Scores this close are a tie, which the fixed direction decides: regular polygons are full of them.
-constexpr float tie = 0.02f;
+constexpr float tie = 1e-4f;
 
 // Twice the signed area of the triangle a, b, p.
 float area(const FacePoint& a, const FacePoint& b, const FacePoint& p) {
