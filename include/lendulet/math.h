@@ -160,7 +160,9 @@ LENDULET_FORCE_INLINE constexpr Quat operator*(Quat a, Quat b) {
 }
 LENDULET_FORCE_INLINE constexpr Quat conjugate(Quat q) { return {-q.x, -q.y, -q.z, q.w}; }
 LENDULET_FORCE_INLINE constexpr Vec3 rotate(Quat q, Vec3 v) { return rotate<float>(QuatT<float>(q), v); }
-LENDULET_FORCE_INLINE constexpr Vec3 rotate_inverse(Quat q, Vec3 v) { return rotate<float>(QuatT<float>(conjugate(q)), v); }
+LENDULET_FORCE_INLINE constexpr Vec3 rotate_inverse(Quat q, Vec3 v) {
+    return rotate<float>(QuatT<float>(conjugate(q)), v);
+}
 LENDULET_FORCE_INLINE constexpr float dot(Quat a, Quat b) { return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w; }
 LENDULET_FORCE_INLINE Quat normalize(Quat q) {
     float s = 1.0f / square_root(dot(q, q));
@@ -223,7 +225,8 @@ LENDULET_FORCE_INLINE constexpr Mat3T<F> rotation_matrix(QuatT<F> q, F one) {
     F x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
     F xx = x2 * q.x, yy = y2 * q.y, zz = z2 * q.z, xy = x2 * q.y, xz = x2 * q.z, yz = y2 * q.z;
     F wx = x2 * q.w, wy = y2 * q.w, wz = z2 * q.w;
-    return {{one - (yy + zz), xy + wz, xz - wy}, {xy - wz, one - (xx + zz), yz + wx}, {xz + wy, yz - wx, one - (xx + yy)}};
+    return {
+        {one - (yy + zz), xy + wz, xz - wy}, {xy - wz, one - (xx + zz), yz + wx}, {xz + wy, yz - wx, one - (xx + yy)}};
 }
 LENDULET_FORCE_INLINE constexpr Mat3 rotation_matrix(Quat q) {
     Mat3T<float> m = rotation_matrix<float>(QuatT<float>(q), 1.0f);
@@ -243,7 +246,9 @@ struct Transform {
     Vec3 translation;
     Quat rotation;
 };
-LENDULET_FORCE_INLINE constexpr Vec3 operator*(const Transform& t, Vec3 p) { return t.translation + rotate(t.rotation, p); }
+LENDULET_FORCE_INLINE constexpr Vec3 operator*(const Transform& t, Vec3 p) {
+    return t.translation + rotate(t.rotation, p);
+}
 LENDULET_FORCE_INLINE constexpr Transform operator*(const Transform& a, const Transform& b) {
     return {a * b.translation, a.rotation * b.rotation};
 }
@@ -257,7 +262,9 @@ struct Pose {
     Position position;
     Quat orientation;
 };
-LENDULET_FORCE_INLINE constexpr Position operator*(const Pose& a, Vec3 p) { return a.position + rotate(a.orientation, p); }
+LENDULET_FORCE_INLINE constexpr Position operator*(const Pose& a, Vec3 p) {
+    return a.position + rotate(a.orientation, p);
+}
 LENDULET_FORCE_INLINE constexpr Pose operator*(const Pose& a, const Transform& b) {
     return {a * b.translation, a.orientation * b.rotation};
 }

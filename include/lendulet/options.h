@@ -12,8 +12,8 @@ namespace lendulet {
 enum class BroadPhaseType : uint8_t { all_pairs, sweep_1, rtree_omt };
 // The sub-algorithm of GJK that finds the closest point of a simplex (thesis 4.1).
 enum class SimplexSolver : uint8_t { barycentric, half_space };
-// How free rotation and translation are integrated. `momentum` (default) keeps L exactly, turns by the implicit midpoint
-// rule at constant L and moves ballistically; the others are references for tables and demos.
+// How free rotation and translation are integrated. `momentum` (default) keeps L exactly, turns by the implicit
+// midpoint rule at constant L and moves ballistically; the others are references for tables and demos.
 enum class Integrator : uint8_t { momentum, explicit_euler, symplectic_euler, runge_kutta_4 };
 
 // The names used on the command line: "rtree-omt", "half-space", "runge-kutta-4".

@@ -17,21 +17,21 @@ enum class ErrorCode : uint8_t {
     bad_extent,       // a shape's size not positive or out of range
     degenerate_hull,  // points that span no volume
     too_many_vertices,
-    bad_mesh,            // empty, index out of range, non-finite vertex
-    bad_collider,        // body without colliders, or a collider that cannot be used there
-    shape_not_dynamic,   // a plane on a moving body
-    bad_material,        // friction or restitution out of range
-    bad_time_step,       // negative or non-finite step
-    bad_joint,           // limits reversed, zero axis, same body twice
-    no_dynamic_body,     // a joint between two bodies that cannot move
-    stale_id,            // the body, collider or joint was removed, or belongs to another world
-    bad_config,          // a world setting out of range
-    bad_query,           // zero or non-finite direction
-    locked,              // called from inside a step
-    out_of_world,        // farther from the origin than positions resolve
-    unknown_name,        // no scene, option or structure of that name
-    parse,               // a file that is malformed
-    io,                  // a file that cannot be read or written
+    bad_mesh,           // empty, index out of range, non-finite vertex
+    bad_collider,       // body without colliders, or a collider that cannot be used there
+    shape_not_dynamic,  // a plane on a moving body
+    bad_material,       // friction or restitution out of range
+    bad_time_step,      // negative or non-finite step
+    bad_joint,          // limits reversed, zero axis, same body twice
+    no_dynamic_body,    // a joint between two bodies that cannot move
+    stale_id,           // the body, collider or joint was removed, or belongs to another world
+    bad_config,         // a world setting out of range
+    bad_query,          // zero or non-finite direction
+    locked,             // called from inside a step
+    out_of_world,       // farther from the origin than positions resolve
+    unknown_name,       // no scene, option or structure of that name
+    parse,              // a file that is malformed
+    io,                 // a file that cannot be read or written
 };
 
 // A refused call: the kind and one sentence with what and where.

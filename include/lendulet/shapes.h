@@ -73,7 +73,7 @@ public:
 
     std::span<const Vec3> vertices() const;  // corners of the hull, local frame, m
     int face_count() const;
-    float rounding() const { return rounding_; }  // radius of the sphere swept around the hull, m
+    float rounding() const { return rounding_; }        // radius of the sphere swept around the hull, m
     bool is_built() const { return data_ != nullptr; }  // false for a default-constructed one, which no body accepts
     const HullData& data() const { return *data_; }     // only where it is built
 
@@ -98,7 +98,7 @@ public:
     static Result<TriangleMesh> from_triangles(std::span<const Vec3> vertices, std::span<const uint32_t> indices);
 
     int triangle_count() const;
-    int dropped_triangles() const;  // how many had no area
+    int dropped_triangles() const;                      // how many had no area
     bool is_built() const { return data_ != nullptr; }  // false for a default-constructed one, which no body accepts
     const MeshData& data() const { return *data_; }     // only where it is built
 
@@ -112,9 +112,9 @@ using Shape = std::variant<Sphere, Capsule, TaperedCapsule, Box, Cylinder, Taper
 
 // Mass, centre of mass and inertia of a solid.
 struct MassProperties {
-    float mass = 0.0f;        // kg
-    Vec3 centre;              // centre of mass, local frame, m
-    SymMat3 inertia;          // about the centre of mass, local axes, kg m^2
+    float mass = 0.0f;  // kg
+    Vec3 centre;        // centre of mass, local frame, m
+    SymMat3 inertia;    // about the centre of mass, local axes, kg m^2
 };
 
 // Exact mass properties of a shape of uniform density (kg/m^3), roundings included. The one approximation: a rounded

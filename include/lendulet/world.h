@@ -169,9 +169,9 @@ public:
             [](void* context, const AabbView& view) { (*static_cast<std::remove_reference_t<Visit>*>(context))(view); },
             const_cast<void*>(static_cast<const void*>(&visit)));
     }
-    // Queries see the boxes of the last step: each holds its collider through that whole step. Colliders added since are
-    // not found yet, removed ones no more.
-    // Colliders whose bounding boxes overlap `box`, at most `capacity`, in collider order; returns how many there are.
+    // Queries see the boxes of the last step: each holds its collider through that whole step. Colliders added since
+    // are not found yet, removed ones no more. Colliders whose bounding boxes overlap `box`, at most `capacity`, in
+    // collider order; returns how many there are.
     int query_boxes(const Aabb& box, ColliderId* out, int capacity) const;
     // Nearest collider box that the segment from `origin` along `translation` meets. Error: bad_query.
     Result<BoxHit> nearest_box(Position origin, Vec3 translation) const;

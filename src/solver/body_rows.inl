@@ -1,21 +1,22 @@
 // Bodies over a substep: kick by forces, drift by velocities. Part of kernels.inl.
 //
-// State is momentum. Constraints change velocities; what they changed is added to L through the inertia of this substep,
-// so L is never recomputed from w and without torque stays constant to the last bit (Delta L = I Delta w is the sum of
-// r x J exactly as the rows applied it). Orientation follows L by the implicit midpoint rule at constant L (Simo, Wong
-// 1991; Hairer, Lubich, Wanner, "Geometric Numerical Integration", ch. VII), which keeps the energy of tumbling bodies.
+// State is momentum. Constraints change velocities; what they changed is added to L through the inertia of this
+// substep, so L is never recomputed from w and without torque stays constant to the last bit (Delta L = I Delta w is
+// the sum of r x J exactly as the rows applied it). Orientation follows L by the implicit midpoint rule at constant L
+// (Simo, Wong 1991; Hairer, Lubich, Wanner, "Geometric Numerical Integration", ch. VII), which keeps the energy of
+// tumbling bodies.
 //
-// Warm start: what constraints added to a body's velocity in the last substep is M^-1 J^T lambda of their final impulses,
-// so adding it again warm-starts every row of the body at once.
+// Warm start: what constraints added to a body's velocity in the last substep is M^-1 J^T lambda of their final
+// impulses, so adding it again warm-starts every row of the body at once.
 //
-// Drift: a body that accelerates evenly moves by the mean of its velocities at both ends of the substep, which makes free
-// flight, sliding and swinging second-order accurate; a body that is being stopped moves by its final velocity, which is
-// what its contacts asked for. Evenly means that the velocity changes now as it did in the substep before.
+// Drift: a body that accelerates evenly moves by the mean of its velocities at both ends of the substep, which makes
+// free flight, sliding and swinging second-order accurate; a body that is being stopped moves by its final velocity,
+// which is what its contacts asked for. Evenly means that the velocity changes now as it did in the substep before.
 //
-// Bodies with joints: joint impulses are no part of the warm start, see joint_passes.inl; the drift goes by the velocity
-// that the joints' biased pass chose. Where nothing but joints constrains a group of bodies, the kick is split: half of
-// the applied forces acts before the drift and half after it (kick-drift-kick), and what joints add follows in the relax
-// pass. Elsewhere all of the kick comes first, as contacts want it.
+// Bodies with joints: joint impulses are no part of the warm start, see joint_passes.inl; the drift goes by the
+// velocity that the joints' biased pass chose. Where nothing but joints constrains a group of bodies, the kick is
+// split: half of the applied forces acts before the drift and half after it (kick-drift-kick), and what joints add
+// follows in the relax pass. Elsewhere all of the kick comes first, as contacts want it.
 
 template <int W>
 struct MotionBlock {
@@ -32,8 +33,22 @@ struct MotionBlock {
         store4<W>(floats_of(m), first, stride, 4 * quad, q);
     }
 };
-enum MotionQuad { quad_q0, quad_inertia, quad_inverse, quad_L, quad_acceleration, quad_torque, quad_v_ref, quad_w_ref,
-                  quad_dv, quad_dw, quad_v_start, quad_L_start, quad_change_v, quad_change_L };
+enum MotionQuad {
+    quad_q0,
+    quad_inertia,
+    quad_inverse,
+    quad_L,
+    quad_acceleration,
+    quad_torque,
+    quad_v_ref,
+    quad_w_ref,
+    quad_dv,
+    quad_dw,
+    quad_v_start,
+    quad_L_start,
+    quad_change_v,
+    quad_change_L
+};
 
 // Theta w or Theta^-1 L: R diag(principal) R^T applied to a world vector.
 template <class F>
@@ -45,9 +60,10 @@ LENDULET_FORCE_INLINE Vec3T<F> apply_principal(QuatT<F> q, Vec3T<F> principal, V
 template <class F>
 LENDULET_FORCE_INLINE QuatT<F> turn_quaternion(Vec3T<F> turn) {
     F x = splat<F>(0.25f) * dot(turn, turn);  // (angle / 2)^2
-    F s = splat<F>(0.5f) + x * (splat<F>(-1.0f / 12.0f) + x * (splat<F>(1.0f / 240.0f) + x * splat<F>(-1.0f / 10080.0f)));
-    F c = splat<F>(1.0f) +
-          x * (splat<F>(-0.5f) + x * (splat<F>(1.0f / 24.0f) + x * (splat<F>(-1.0f / 720.0f) + x * splat<F>(1.0f / 40320.0f))));
+    F s =
+        splat<F>(0.5f) + x * (splat<F>(-1.0f / 12.0f) + x * (splat<F>(1.0f / 240.0f) + x * splat<F>(-1.0f / 10080.0f)));
+    F c = splat<F>(1.0f) + x * (splat<F>(-0.5f) + x * (splat<F>(1.0f / 24.0f) +
+                                                       x * (splat<F>(-1.0f / 720.0f) + x * splat<F>(1.0f / 40320.0f))));
     return {s * turn.x, s * turn.y, s * turn.z, c};
 }
 template <class F>
@@ -58,12 +74,13 @@ LENDULET_FORCE_INLINE QuatT<F> normalized(QuatT<F> q) {
 
 inline constexpr int max_turn_parts = 32;
 
-// Turns dq q0 over h at constant L. The fixed point of the midpoint rule contracts for h |w| anisotropy < 1, so fast and
-// slender bodies are turned in parts; kinematic lanes (no inertia) turn with their given w.
+// Turns dq q0 over h at constant L. The fixed point of the midpoint rule contracts for h |w| anisotropy < 1, so fast
+// and slender bodies are turned in parts; kinematic lanes (no inertia) turn with their given w.
 template <int W>
 LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float, W>> dq, QuatT<Wide<float, W>> q0,
-                                                              Vec3T<Wide<float, W>> L, Vec3T<Wide<float, W>> inverse,
-                                                              Vec3T<Wide<float, W>> w, Wide<float, W> anisotropy, float h) {
+                                                               Vec3T<Wide<float, W>> L, Vec3T<Wide<float, W>> inverse,
+                                                               Vec3T<Wide<float, W>> w, Wide<float, W> anisotropy,
+                                                               float h) {
     using F = Wide<float, W>;
     const F one = splat<F>(1.0f), zero = splat<F>(0.0f);
     auto given = (inverse.x + inverse.y + inverse.z) <= zero;
@@ -99,7 +116,8 @@ LENDULET_FORCE_INLINE JointMode<F> joint_mode(F joints) {
     return {select(joints > splat<F>(0.5f), one, zero), select(joints > splat<F>(1.5f), one, zero)};
 }
 
-// Leaves dw/dt = I^-1 (L x w), the change of w at constant L, where joints find it with the state that they load anyway.
+// Leaves dw/dt = I^-1 (L x w), the change of w at constant L, where joints find it with the state that they load
+// anyway.
 template <int W>
 LENDULET_FORCE_INLINE void store_gyro(SolverBodies& bodies, const int32_t* index, const SymMat3T<Wide<float, W>>& I,
                                       Vec3T<Wide<float, W>> L, Vec3T<Wide<float, W>> w) {
@@ -119,7 +137,8 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, bool first_sub
     for (int i = begin; i < end; i += W) {
         int32_t index[W];
         for (int l = 0; l < W; ++l) index[l] = i + l;
-        WideVelocity<F> x = load_velocity<W>(bodies.state.data(), index), start = load_start<W>(bodies.start.data(), index);
+        WideVelocity<F> x = load_velocity<W>(bodies.state.data(), index),
+                        start = load_start<W>(bodies.start.data(), index);
         auto movable = x.inverse_mass > splat<F>(0.0f);
         F unused, linear_loss, angular_loss, anisotropy;
         Vec3T<F> inertia = M::load(motion, i, quad_inertia, linear_loss);
@@ -136,7 +155,8 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, bool first_sub
             F q[4];
             load4<W>(floats_of(motion), i, M::stride, 4 * quad_q0, q);
             QuatT<F> orientation = multiply(dq, QuatT<F>{q[0], q[1], q[2], q[3]});
-            Vec3T<F> rv = x.v - M::load(motion, i, quad_v_ref, unused), rw = x.w - M::load(motion, i, quad_w_ref, unused);
+            Vec3T<F> rv = x.v - M::load(motion, i, quad_v_ref, unused),
+                     rw = x.w - M::load(motion, i, quad_w_ref, unused);
             dv = M::load(motion, i, quad_dv, unused) + rv;
             dw = M::load(motion, i, quad_dw, unused) + rw;
             L = L + apply_principal(orientation, inertia, rw);
@@ -148,7 +168,8 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, bool first_sub
         M::store(motion, i, quad_change_v, change_v, splat<F>(0.0f));
         M::store(motion, i, quad_change_L, change_L, splat<F>(0.0f));
         F free, joints, h = splat<F>(k.h);
-        Vec3T<F> acceleration = M::load(motion, i, quad_acceleration, free), torque = M::load(motion, i, quad_torque, joints);
+        Vec3T<F> acceleration = M::load(motion, i, quad_acceleration, free),
+                 torque = M::load(motion, i, quad_torque, joints);
         if (k.joints) {
             auto split = joint_mode(joints).split > splat<F>(0.0f);
             h = select(split, splat<F>(0.5f) * h, h);
@@ -206,8 +227,8 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
 
         Vec3T<F> change_v = even_change(x.v - M::load(motion, i, quad_v_start, unused),
                                         M::load(motion, i, quad_change_v, unused), free);
-        Vec3T<F> change_L = even_change(L - M::load(motion, i, quad_L_start, unused),
-                                        M::load(motion, i, quad_change_L, unused), free);
+        Vec3T<F> change_L =
+            even_change(L - M::load(motion, i, quad_L_start, unused), M::load(motion, i, quad_change_L, unused), free);
         JointMode<F> mode{};
         if (k.joints) {
             F joints;
@@ -278,7 +299,8 @@ void book_joints(SolverBodies& bodies, Booking what, int begin, int end) {
         auto jointed = joint_mode(joints).jointed > zero;
         WideVelocity<F> x = load_velocity<W>(bodies.state.data(), index);
         Vec3T<F> v = M::load(motion, i, quad_v_ref, unused), w = M::load(motion, i, quad_w_ref, unused);
-        Vec3T<F> added_v = select(jointed, x.v - v, zero_vector<F>()), added_w = select(jointed, x.w - w, zero_vector<F>());
+        Vec3T<F> added_v = select(jointed, x.v - v, zero_vector<F>()),
+                 added_w = select(jointed, x.w - w, zero_vector<F>());
         if (what == Booking::contacts_warm) {
             M::store(motion, i, quad_dv, added_v, zero);
             M::store(motion, i, quad_dw, added_w, zero);

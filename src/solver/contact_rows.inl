@@ -5,31 +5,31 @@
 // velocity at the centre and the relative spin about -t2 and t1. A sweep over the points needs the bodies once, at the
 // start and at the end; in between the points see each other through the entries n_i M^-1 n_j.
 //
-// Arms follow the substep's motion: both bodies get the impulse at the same world point x_a + r_a = x_b + r_b, so linear
-// and angular momentum are conserved together. Separations follow the bodies' displacement and rotation, but the point of
-// a swept surface (ball, capsule, side of a cylinder) does not turn with its body, only its core point does.
+// Arms follow the substep's motion: both bodies get the impulse at the same world point x_a + r_a = x_b + r_b, so
+// linear and angular momentum are conserved together. Separations follow the bodies' displacement and rotation, but the
+// point of a swept surface (ball, capsule, side of a cylinder) does not turn with its body, only its core point does.
 
 template <int W, int P>
 struct alignas(64) ContactRow {
     using F = Wide<float, W>;
     int32_t a[W], b[W];
-    Vec3T<F> n, t1;      // normal, first tangent; the second is n x t1
-    Vec3T<F> ra, rb;     // arms of the centre at the start of the step
+    Vec3T<F> n, t1;   // normal, first tangent; the second is n x t1
+    Vec3T<F> ra, rb;  // arms of the centre at the start of the step
     F follow, radius_a, radius_b;
     struct Point {
-        F u, v;          // place along t1, t2 from the centre
-        F separation;    // at the start of the step
-        F impulse;       // accumulated normal impulse lambda
-        F mass;          // 1 / (n M^-1 n)
+        F u, v;        // place along t1, t2 from the centre
+        F separation;  // at the start of the step
+        F impulse;     // accumulated normal impulse lambda
+        F mass;        // 1 / (n M^-1 n)
     } p[P];
     F coupling[P == 4 ? 6 : 1];  // n_i M^-1 n_j: 10 20 21 30 31 32
-    Vec3T<F> moved;      // displacement of B relative to A since the start of the step
-    F shift[3];          // the separations' change: at the centre, per u, per v
+    Vec3T<F> moved;              // displacement of B relative to A since the start of the step
+    F shift[3];                  // the separations' change: at the centre, per u, per v
     F static_friction, dynamic_friction;
-    F friction_mass[6];  // inverse of the block of t1, t2 and twist: 11 12 13 22 23 33
-    F tangent[2], twist; // friction impulses
-    F push_speed;        // fastest that overlap is undone
-    F bounce_speed;      // approach speed from which the impact stage alone handles the point; huge where e = 0
+    F friction_mass[6];   // inverse of the block of t1, t2 and twist: 11 12 13 22 23 33
+    F tangent[2], twist;  // friction impulses
+    F push_speed;         // fastest that overlap is undone
+    F bounce_speed;       // approach speed from which the impact stage alone handles the point; huge where e = 0
 };
 
 struct BodyArrays {
@@ -227,7 +227,8 @@ enum class Pass { warm_start, solve, relax };
 // coefficient otherwise (thesis 3.3.4 with THESIS-NOTES). Returns the impulse on B and the angular impulse about n.
 template <int W, int P>
 LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float, W>> t2, Vec3T<Wide<float, W>> slip,
-                                          Wide<float, W> spin, Vec3T<Wide<float, W>>& linear, Vec3T<Wide<float, W>>& angular) {
+                                          Wide<float, W> spin, Vec3T<Wide<float, W>>& linear,
+                                          Vec3T<Wide<float, W>>& angular) {
     using F = Wide<float, W>;
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
     F total = c.p[0].impulse, lever = zero;
@@ -279,8 +280,8 @@ LENDULET_FORCE_INLINE void update_displacement(ContactRow<W, P>& c, const BodySt
     }
 }
 
-// `fixed_a` (A is not moved by constraints) and k.moved are the same for all rows of a loop: branches cost nothing here,
-// copies of the kernel would only take longer to build.
+// `fixed_a` (A is not moved by constraints) and k.moved are the same for all rows of a loop: branches cost nothing
+// here, copies of the kernel would only take longer to build.
 template <int W, int P, Pass pass>
 LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& bodies, const SubstepConstants& k,
                                         bool fixed_a) {
@@ -364,8 +365,7 @@ template <int W, int P, Pass pass>
 void run_pass(const ContactGroup& g, SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
     auto* rows = reinterpret_cast<ContactRow<W, P>*>(g.rows);
     const BodyArrays arrays{bodies.state.data(), bodies.inertia.data(), bodies.start.data()};
-    for (int i = begin; i < end; ++i)
-        contact_pass<W, P, pass>(rows[i], arrays, k, g.fixed_a);
+    for (int i = begin; i < end; ++i) contact_pass<W, P, pass>(rows[i], arrays, k, g.fixed_a);
 }
 
 // --- and back
@@ -384,7 +384,8 @@ void store_rows(const ContactGroup& g, ContactRecord* records, int begin, int en
                 r.normal_impulse[j] = lane(c.p[j].impulse, l);
                 float s = lane(c.p[j].separation, l);
                 if (s < 0.1f * far_separation)
-                    s += lane(c.shift[0], l) + lane(c.p[j].u, l) * lane(c.shift[1], l) + lane(c.p[j].v, l) * lane(c.shift[2], l);
+                    s += lane(c.shift[0], l) + lane(c.p[j].u, l) * lane(c.shift[1], l) +
+                         lane(c.p[j].v, l) * lane(c.shift[2], l);
                 r.points[j].separation = s;
             }
             r.friction_impulse[0] = lane(f.x, l);

@@ -1,10 +1,10 @@
-// The algebra of joints: how the relative motion at a shared world point answers to impulses there, and the direct solve
-// of a few rows. Part of kernels.inl.
+// The algebra of joints: how the relative motion at a shared world point answers to impulses there, and the direct
+// solve of a few rows. Part of kernels.inl.
 
 // L D L^T of a symmetric positive definite matrix, with D inverted. Rows that cannot move (empty lanes) get no impulse.
 template <class F, int N>
 struct Factor {
-    F lower[N > 1 ? N * (N - 1) / 2 : 1];  // row by row: 10 20 21 30 31 32 ...
+    F lower[N > 1 ? N*(N - 1) / 2 : 1];  // row by row: 10 20 21 30 31 32 ...
     F inverse[N];
 
     LENDULET_FORCE_INLINE F& at(int i, int j) { return lower[i * (i - 1) / 2 + j]; }
@@ -36,13 +36,13 @@ struct Factor {
 };
 
 // Velocity of B relative to A at the shared point (linear) and in turning (angular), per impulse P at that point and
-// angular impulse T: linear = K P + C T, angular = C^T P + I T. With r the arm of either body, row i of its part of C is
-// I^-1 (r x e_i), and its part of K is that crossed into r.
+// angular impulse T: linear = K P + C T, angular = C^T P + I T. With r the arm of either body, row i of its part of C
+// is I^-1 (r x e_i), and its part of K is that crossed into r.
 template <class F>
 struct PointResponse {
-    SymMat3T<F> linear;       // K
-    Vec3T<F> x, y, z;         // rows of C
-    SymMat3T<F> angular;      // I
+    SymMat3T<F> linear;   // K
+    Vec3T<F> x, y, z;     // rows of C
+    SymMat3T<F> angular;  // I
 
     LENDULET_FORCE_INLINE Vec3T<F> coupled(Vec3T<F> t) const { return {dot(x, t), dot(y, t), dot(z, t)}; }  // C t
     LENDULET_FORCE_INLINE Vec3T<F> turned(Vec3T<F> p) const { return p.x * x + p.y * y + p.z * z; }         // C^T p
@@ -68,7 +68,10 @@ LENDULET_FORCE_INLINE PointResponse<F> point_response(Vec3T<F> ra, Vec3T<F> rb, 
                                                       const SymMat3T<F>& IB, F inverse_masses) {
     const F zero = splat<F>(0.0f);
     PointResponse<F> p{{inverse_masses, inverse_masses, inverse_masses, zero, zero, zero},
-                       zero_vector<F>(), zero_vector<F>(), zero_vector<F>(), IA + IB};
+                       zero_vector<F>(),
+                       zero_vector<F>(),
+                       zero_vector<F>(),
+                       IA + IB};
     add_body(p, ra, IA);
     add_body(p, rb, IB);
     return p;

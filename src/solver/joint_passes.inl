@@ -20,12 +20,13 @@ struct JointChange {
 
 // Total of row impulses as vectors: linear at the shared point, angular.
 template <int W, JointClass C>
-LENDULET_FORCE_INLINE void to_vectors(const JointRow<W, C>& c, const JointChange<W, C>& x, Vec3T<Wide<float, W>>& linear,
-                                      Vec3T<Wide<float, W>>& angular) {
+LENDULET_FORCE_INLINE void to_vectors(const JointRow<W, C>& c, const JointChange<W, C>& x,
+                                      Vec3T<Wide<float, W>>& linear, Vec3T<Wide<float, W>>& angular) {
     using F = Wide<float, W>;
     using S = JointShape<C>;
     angular = zero_vector<F>();
-    if constexpr (S::slider) linear = x.locked[0] * c.direction[0] + x.locked[1] * c.direction[1] + x.bounded[0] * c.direction[2];
+    if constexpr (S::slider)
+        linear = x.locked[0] * c.direction[0] + x.locked[1] * c.direction[1] + x.bounded[0] * c.direction[2];
     else linear = {x.locked[0], x.locked[1], x.locked[2]};
     if constexpr (S::angular > 0)
         for (int j = 0; j < S::angular; ++j) angular = angular + x.locked[S::linear + j] * c.direction[j];
@@ -33,8 +34,8 @@ LENDULET_FORCE_INLINE void to_vectors(const JointRow<W, C>& c, const JointChange
         for (int j = 0; j < S::bounded; ++j) angular = angular + x.bounded[j] * c.direction[S::limited_ball ? j : 2];
 }
 
-// How fast the relative motion changes by itself along the turning axes, times half a substep: joints must be ahead of it
-// by that much for their gap to close at the end of the drift.
+// How fast the relative motion changes by itself along the turning axes, times half a substep: joints must be ahead of
+// it by that much for their gap to close at the end of the drift.
 template <class F>
 LENDULET_FORCE_INLINE Vec3T<F> sliding_curvature(const JointPair<F>& p, Vec3T<F> ra, Vec3T<F> rb, Vec3T<F> sliding) {
     Vec3T<F> b = cross(p.gyro_b, rb) + cross(p.spin_b(), cross(p.spin_b(), rb));
@@ -48,8 +49,9 @@ LENDULET_FORCE_INLINE Vec3T<F> turning_curvature(const JointPair<F>& p) {
 
 // Velocities that the locked rows still have to lose, as impulses with all of them solved together.
 template <int W, JointClass C, bool biased>
-LENDULET_FORCE_INLINE void solve_locked(JointRow<W, C>& c, const JointPair<Wide<float, W>>& p, const SubstepConstants& k,
-                                        Vec3T<Wide<float, W>> sliding, Vec3T<Wide<float, W>> turning,
+LENDULET_FORCE_INLINE void solve_locked(JointRow<W, C>& c, const JointPair<Wide<float, W>>& p,
+                                        const SubstepConstants& k, Vec3T<Wide<float, W>> sliding,
+                                        Vec3T<Wide<float, W>> turning,
                                         Wide<float, W> (&change)[JointShape<C>::locked]) {
     using F = Wide<float, W>;
     using S = JointShape<C>;
@@ -59,7 +61,8 @@ LENDULET_FORCE_INLINE void solve_locked(JointRow<W, C>& c, const JointPair<Wide<
         return maximum(minimum(rate * gap, splat<F>(joint_push_speed)), splat<F>(-joint_push_speed));
     };
     if constexpr (biased) {
-        sliding = sliding + splat<F>(0.5f * k.h) * sliding_curvature(p, c.ra, c.rb, S::slider ? sliding : zero_vector<F>());
+        sliding =
+            sliding + splat<F>(0.5f * k.h) * sliding_curvature(p, c.ra, c.rb, S::slider ? sliding : zero_vector<F>());
         turning = turning + splat<F>(0.5f * k.h) * turning_curvature(p);
     }
     for (int i = 0; i < S::linear; ++i) {
@@ -133,8 +136,8 @@ LENDULET_FORCE_INLINE Wide<float, W> solve_drive(JointRow<W, C>& c, const Subste
 
 // Bounded rows one after the other, each with the locked rows held still.
 template <int W, JointClass C, bool biased>
-LENDULET_FORCE_INLINE void solve_bounded(JointRow<W, C>& c, const JointPair<Wide<float, W>>& p, const SubstepConstants& k,
-                                         JointChange<W, C>& x) {
+LENDULET_FORCE_INLINE void solve_bounded(JointRow<W, C>& c, const JointPair<Wide<float, W>>& p,
+                                         const SubstepConstants& k, JointChange<W, C>& x) {
     using F = Wide<float, W>;
     using S = JointShape<C>;
     Vec3T<F> sliding = p.sliding(c.ra, c.rb), turning = p.turning();
@@ -179,12 +182,14 @@ LENDULET_FORCE_INLINE JointChange<W, C> stored_impulses(JointRow<W, C>& c, const
 }
 
 template <int W, JointClass C, JointPass pass>
-LENDULET_FORCE_INLINE void joint_pass(JointRow<W, C>& c, const JointGroup& g, SolverBodies& bodies, const SubstepConstants& k) {
+LENDULET_FORCE_INLINE void joint_pass(JointRow<W, C>& c, const JointGroup& g, SolverBodies& bodies,
+                                      const SubstepConstants& k) {
     using F = Wide<float, W>;
     using S = JointShape<C>;
     constexpr bool biased = pass == JointPass::solve;
     JointPair<F> pair = load_pair<W, C>(c, bodies, biased);
-    if (pass == JointPass::warm_relax || (pass == JointPass::warm_start && k.moved)) update_joint<W, C>(c, bodies, pair);
+    if (pass == JointPass::warm_relax || (pass == JointPass::warm_start && k.moved))
+        update_joint<W, C>(c, bodies, pair);
     JointChange<W, C> x;
     Vec3T<F> linear, angular;
     if constexpr (pass == JointPass::solve || pass == JointPass::relax) {
@@ -198,7 +203,7 @@ LENDULET_FORCE_INLINE void joint_pass(JointRow<W, C>& c, const JointGroup& g, So
             solve_bounded<W, C, biased>(c, pair, k, x);
         }
     } else {
-        x = stored_impulses<W, C, pass == JointPass::warm_relax ? 1 : 0>(c, k);
+        x = stored_impulses < W, C, pass == JointPass::warm_relax ? 1 : 0 > (c, k);
     }
     to_vectors<W, C>(c, x, linear, angular);
     pair.push(c.ra, c.rb, linear, angular);
@@ -241,7 +246,8 @@ void store_joints(const JointGroup& g, JointRecord* records, int begin, int end)
                     (i < S::linear ? places[set][0][i] : places[set][1][i - S::linear]) = lane(c.impulse[set][i], l);
             if constexpr (S::bounded > 0) r.limit_0 = lane(c.row[0].limit[0], l);
             if constexpr (S::bounded > 1) r.limit_1 = lane(c.row[1].limit[0], l);
-            if constexpr (S::driven) r.motor_0 = lane(c.motor[0], l), r.motor_1 = lane(c.motor[1], l), r.spring = lane(c.spring, l);
+            if constexpr (S::driven)
+                r.motor_0 = lane(c.motor[0], l), r.motor_1 = lane(c.motor[1], l), r.spring = lane(c.spring, l);
             for (int i = 0; i < 3; ++i) {
                 r.impulse[i] = lane(component_of(linear, i), l);
                 r.angular_impulse[i] = lane(component_of(angular, i), l);

@@ -1,8 +1,8 @@
 // Joint rows: W joints of one class side by side, and how they follow the bodies. Part of kernels.inl.
 //
-// Both bodies get every impulse at one shared world point: half way between the two anchors, or at B's anchor for sliders,
-// whose anchors are meant to be apart. Linear and angular momentum are therefore conserved together. Arms, axes and effective masses
-// are taken anew in every substep, from the displacement since the start of the step.
+// Both bodies get every impulse at one shared world point: half way between the two anchors, or at B's anchor for
+// sliders, whose anchors are meant to be apart. Linear and angular momentum are therefore conserved together. Arms,
+// axes and effective masses are taken anew in every substep, from the displacement since the start of the step.
 
 template <JointClass C>
 struct JointShape {
@@ -25,9 +25,9 @@ struct NoPart {};
 template <int W, JointClass C>
 struct JointAxes {
     using F = Wide<float, W>;
-    QuatT<F> frame_a, frame_b;                        // joint frame on each body at the start of the step, world
-    Vec3T<F> direction[JointShape<C>::directions];    // now, world
-    F error[3];                                       // of the locked angular rows, rad
+    QuatT<F> frame_a, frame_b;                      // joint frame on each body at the start of the step, world
+    Vec3T<F> direction[JointShape<C>::directions];  // now, world
+    F error[3];                                     // of the locked angular rows, rad
 };
 
 // Rows with bounds, each solved with the locked rows held.
@@ -41,7 +41,7 @@ struct JointBounds {
         F rate;                 // this row's velocity per unit impulse, locked rows held
         F limit[2];             // impulses of the biased and the relax pass
     } row[S::bounded];
-    F coupling;                 // velocity of row 1 per unit impulse of row 0, locked rows held
+    F coupling;  // velocity of row 1 per unit impulse of row 0, locked rows held
 };
 template <int W>
 struct JointDrive {
@@ -60,9 +60,9 @@ struct alignas(64) JointRow : std::conditional_t<(JointShape<C>::directions > 0)
     Vec3T<F> ra0, rb0, gap0;  // arms of the two anchors and the way from A's to B's, at the start of the step
     Vec3T<F> ra, rb, gap;     // now; the arms are those of the shared point
     Factor<F, locked> mass;
-    F impulse[2][locked];     // of the biased pass and of the relax pass
-    F bias, leak;             // shares of the gap undone and of the impulse given up in a biased pass
-    F split;                  // 1: half of the applied forces' share acts in each pass; 0: all of it in the biased pass
+    F impulse[2][locked];  // of the biased pass and of the relax pass
+    F bias, leak;          // shares of the gap undone and of the impulse given up in a biased pass
+    F split;               // 1: half of the applied forces' share acts in each pass; 0: all of it in the biased pass
 };
 
 template <class F>
@@ -95,7 +95,8 @@ LENDULET_FORCE_INLINE void update_axes(JointRow<W, C>& c, QuatT<Wide<float, W>> 
         F size = length(swing);
         c.direction[0] = select(size > splat<F>(1e-6f), (one / maximum(size, splat<F>(1e-6f))) * swing, axes.y);
         c.direction[1] = (one / maximum(one + dot(axes.x, xb), splat<F>(0.02f))) * (axes.x + xb);
-        c.row[0].coordinate = two * arc_tangent2<F>(square_root(q.y * q.y + q.z * q.z), square_root(q.x * q.x + q.w * q.w));
+        c.row[0].coordinate =
+            two * arc_tangent2<F>(square_root(q.y * q.y + q.z * q.z), square_root(q.x * q.x + q.w * q.w));
         c.row[1].coordinate = two * arc_tangent2<F>(q.x, q.w);
     } else {
         c.direction[0] = axes.y;
@@ -137,9 +138,10 @@ LENDULET_FORCE_INLINE void factor_locked(JointRow<W, C>& c, const PointResponse<
     for (int i = 0; i < S::linear; ++i) {
         Vec3T<F> column;
         if constexpr (S::slider) column = p.linear * c.direction[i];
-        else column = i == 0 ? Vec3T<F>{p.linear.xx, p.linear.xy, p.linear.xz}
-                    : i == 1 ? Vec3T<F>{p.linear.xy, p.linear.yy, p.linear.yz}
-                             : Vec3T<F>{p.linear.xz, p.linear.yz, p.linear.zz};
+        else
+            column = i == 0   ? Vec3T<F>{p.linear.xx, p.linear.xy, p.linear.xz}
+                     : i == 1 ? Vec3T<F>{p.linear.xy, p.linear.yy, p.linear.yz}
+                              : Vec3T<F>{p.linear.xz, p.linear.yz, p.linear.zz};
         for (int j = i; j < S::linear; ++j) k[j][i] = along_row<W, C>(c, j, column);
     }
     if constexpr (S::angular > 0)
@@ -181,7 +183,7 @@ LENDULET_FORCE_INLINE void factor_bounded(JointRow<W, C>& c, const PointResponse
 // Brings a row up to date with its bodies. Not inlined: it is called from several passes, and long.
 template <int W, JointClass C>
 [[gnu::noinline]] void update_joint(JointRow<W, C>& c, const SolverBodies& bodies,
-                                        const JointPair<Wide<float, W>>& pair) {
+                                    const JointPair<Wide<float, W>>& pair) {
     using F = Wide<float, W>;
     using S = JointShape<C>;
     Vec3T<F> dpa, dpb;
@@ -196,7 +198,8 @@ template <int W, JointClass C>
         c.ra = c.ra + c.gap;
     } else {  // half the gap to each, but no more than the arms are long: torn joints must not get endless levers
         F arms = dot(c.ra, c.ra) + dot(c.rb, c.rb), gap = dot(c.gap, c.gap);
-        F share = splat<F>(0.5f) * select(gap > arms, square_root(arms / maximum(gap, splat<F>(1e-30f))), splat<F>(1.0f));
+        F share =
+            splat<F>(0.5f) * select(gap > arms, square_root(arms / maximum(gap, splat<F>(1e-30f))), splat<F>(1.0f));
         c.ra = c.ra + share * c.gap;
         c.rb = c.rb - share * c.gap;
     }
@@ -232,8 +235,21 @@ struct JointQuads {
     LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> vector() const { return {q[0], q[1], q[2]}; }
     LENDULET_FORCE_INLINE QuatT<Wide<float, W>> quat() const { return {q[0], q[1], q[2], q[3]}; }
 };
-enum JointQuad { joint_arm_a, joint_arm_b, joint_frame_a, joint_frame_b, joint_offset, joint_bodies, joint_limits,
-                 joint_spring, joint_linear_0, joint_angular_0, joint_linear_1, joint_angular_1, joint_spring_impulse };
+enum JointQuad {
+    joint_arm_a,
+    joint_arm_b,
+    joint_frame_a,
+    joint_frame_b,
+    joint_offset,
+    joint_bodies,
+    joint_limits,
+    joint_spring,
+    joint_linear_0,
+    joint_angular_0,
+    joint_linear_1,
+    joint_angular_1,
+    joint_spring_impulse
+};
 
 // Impulses of the last step, for how the two passes share them now.
 template <int W, JointClass C>
@@ -262,7 +278,8 @@ LENDULET_FORCE_INLINE void load_impulses(JointRow<W, C>& c, const JointRecord* r
         c.motor[1] = a1.q[3];
         share(c.motor[0], c.motor[1]);
         c.spring = JointQuads<W>(records, index, joint_spring_impulse).q[0];
-        c.spring = select(c.split > was_split, half * c.spring, select(c.split < was_split, c.spring + c.spring, c.spring));
+        c.spring =
+            select(c.split > was_split, half * c.spring, select(c.split < was_split, c.spring + c.spring, c.spring));
     }
 }
 
@@ -285,7 +302,8 @@ LENDULET_FORCE_INLINE void prepare_joint(JointRow<W, C>& c, const JointGroup& gr
         set_lane(c.split, l, (r.flags & joint_split) != 0 ? 1.0f : 0.0f);
         set_lane(was_split, l, (r.old_flags & joint_split) != 0 ? 1.0f : 0.0f);
     }
-    JointQuads<W> arm_a(records, index, joint_arm_a), arm_b(records, index, joint_arm_b), offset(records, index, joint_offset);
+    JointQuads<W> arm_a(records, index, joint_arm_a), arm_b(records, index, joint_arm_b),
+        offset(records, index, joint_offset);
     F qa[4], qb[4];
     constexpr int motion_stride = sizeof(BodyMotion) / sizeof(float);
     gather4<W>(floats_of(bodies.motion.data()), c.a, motion_stride, 0, qa);
@@ -316,7 +334,8 @@ LENDULET_FORCE_INLINE void prepare_joint(JointRow<W, C>& c, const JointGroup& gr
             for (F& x : c.impulse[set]) set_lane(x, l, 0.0f);
         if constexpr (S::bounded > 0)
             for (auto& row : c.row) set_lane(row.limit[0], l, 0.0f);
-        if constexpr (S::driven) set_lane(c.motor[0], l, 0.0f), set_lane(c.motor[1], l, 0.0f), set_lane(c.spring, l, 0.0f);
+        if constexpr (S::driven)
+            set_lane(c.motor[0], l, 0.0f), set_lane(c.motor[1], l, 0.0f), set_lane(c.spring, l, 0.0f);
     }
     update_joint<W, C>(c, bodies, load_pair<W, C>(c, bodies, false));
 }

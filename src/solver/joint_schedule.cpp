@@ -14,8 +14,8 @@ Sides sides(const SolverBodies& bodies, const JointRecord& r) {
     return moved(bodies, r.body_a) ? both_moved : only_b_moved;
 }
 
-// Empty lanes of the groups of one colour must not share a body, nor with those of contacts: reserved bodies 3 to 15 but
-// for the one of static bodies.
+// Empty lanes of the groups of one colour must not share a body, nor with those of contacts: reserved bodies 3 to 15
+// but for the one of static bodies.
 int32_t filler(int type, int side_kind) {
     int32_t f = 3 + type + (side_kind == only_a_moved ? joint_classes : 0);
     return f < static_body ? f : f + 1;
@@ -40,14 +40,16 @@ uint32_t JointSchedule::root(uint32_t i) {
 
 // Contacts that press make the whole group of jointed bodies theirs. Where no contact touches a jointed body, which is
 // quickly seen, groups need not be found.
-void JointSchedule::find_touching(const JointRecord* records, int count, ContactList contacts, const SolverBodies& bodies) {
+void JointSchedule::find_touching(const JointRecord* records, int count, ContactList contacts,
+                                  const SolverBodies& bodies) {
     touched_.assign(static_cast<size_t>(bodies.count), uint8_t{0});
     any_touching = false;
     for (int i = 0; i < contacts.count; ++i) {
         const ContactRecord& r = contacts.records[contacts.list[i]];
         if (!presses(r)) continue;
         for (int32_t body : {r.body_a, r.body_b})
-            if (joint_count_[static_cast<size_t>(body)] > 0) touched_[static_cast<size_t>(body)] = 1, any_touching = true;
+            if (joint_count_[static_cast<size_t>(body)] > 0)
+                touched_[static_cast<size_t>(body)] = 1, any_touching = true;
     }
     if (!any_touching) return;
     parent_.resize_unset(static_cast<size_t>(bodies.count));
@@ -79,13 +81,14 @@ void JointSchedule::set_modes(JointRecord* records, int count, SolverBodies& bod
     }
 }
 
-void JointSchedule::colour(const JointRecord* records, int count, const SolverBodies& bodies, const SolverKernels& kernels,
-                           const SolverKernels& scalar_kernels) {
+void JointSchedule::colour(const JointRecord* records, int count, const SolverBodies& bodies,
+                           const SolverKernels& kernels, const SolverKernels& scalar_kernels) {
     sorter_.begin(bodies.count, count, classes);
     for (int i = 0; i < count; ++i) {
         const JointRecord& r = records[i];
         Sides s = sides(bodies, r);
-        sorter_.add(r.body_a, s != only_b_moved, r.body_b, s != only_a_moved, static_cast<int>(r.type) * side_kinds + s);
+        sorter_.add(r.body_a, s != only_b_moved, r.body_b, s != only_a_moved,
+                    static_cast<int>(r.type) * side_kinds + s);
     }
     sorter_.end();
     order.resize_unset(static_cast<size_t>(count));

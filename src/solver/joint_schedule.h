@@ -19,19 +19,24 @@ struct ContactList {
 };
 
 struct JointSchedule {
-    Array<uint32_t> order;         // indices of records, by group
-    Array<JointGroup> groups;      // in the order in which they are solved
+    Array<uint32_t> order;     // indices of records, by group
+    Array<JointGroup> groups;  // in the order in which they are solved
     Array<std::byte> rows;
     int first_overflow_group = 0;  // groups from here on hold joints that share bodies: one lane, one thread
     bool any_touching = false;     // whether some bodies have joints and belong to a group with contacts
 
     explicit JointSchedule(const Memory* memory)
-        : order(memory), groups(memory), rows(memory), sorter_(memory), joint_count_(memory), parent_(memory),
+        : order(memory),
+          groups(memory),
+          rows(memory),
+          sorter_(memory),
+          joint_count_(memory),
+          parent_(memory),
           touched_(memory) {}
 
     // Colours `count` joints, sets their flags, and BodyMotion::joints and ::free of the bodies that they move.
-    void build(JointRecord* records, int count, ContactList contacts, SolverBodies& bodies, const SolverKernels& kernels,
-               const SolverKernels& scalar_kernels);
+    void build(JointRecord* records, int count, ContactList contacts, SolverBodies& bodies,
+               const SolverKernels& kernels, const SolverKernels& scalar_kernels);
 
 private:
     void find_touching(const JointRecord* records, int count, ContactList contacts, const SolverBodies& bodies);

@@ -30,7 +30,8 @@ private:
     // Calls run(kernels, group, begin, end) for every group, colour after colour.
     template <class Run>
     void for_each_group(TaskPool& tasks, Run&& run) const;
-    void pass(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k, JointKernels::Pass JointKernels::*which) const;
+    void pass(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k,
+              JointKernels::Pass JointKernels::*which) const;
     void book(TaskPool& tasks, SolverBodies& bodies, Booking what) const;
 
     JointSchedule schedule_;

@@ -106,6 +106,12 @@ Vec3 velocity_at(const WorldData& world, uint32_t body, Position point) {
 
 // --- to the solver
 
+// From A's centre of mass to B's, with what rounding took from their positions.
+Vec3 between(const WorldData& world, uint32_t a, uint32_t b) {
+    const BodyStore& bodies = world.bodies;
+    return (bodies.pose[b].position - bodies.pose[a].position) - (bodies.momenta[b].x_low - bodies.momenta[a].x_low);
+}
+
 JointClass class_of(const JointInfo& j) {
     bool driven = !j.limit.free() || j.motor.max_force > 0.0f || j.spring.stiffness > 0.0f || j.spring.damping > 0.0f;
     switch (j.type) {
@@ -331,7 +337,7 @@ void pack_joints(WorldData& world, float h) {
             JointRecord r{};
             put_side(world, j.body_a, j.frame_a, r.arm_a, r.frame_a, r.body_a);
             put_side(world, j.body_b, j.frame_b, r.arm_b, r.frame_b, r.body_b);
-            put(r.offset, world.bodies.pose[j.body_b].position - world.bodies.pose[j.body_a].position);
+            put(r.offset, between(world, j.body_a, j.body_b));
             r.type = class_of(j);
             put_bounds(r, j);
             put_impulses(r, joints.impulses[slot], scale);

@@ -164,11 +164,13 @@ private:
             if (!(b.mass > 0.0f)) continue;
             size_t k = static_cast<size_t>(b.index);
             BodyState s{};
-            put(s.v, b.v);
-            put(s.w, b.w());
             s.inverse_mass = 1.0f / b.mass;
             s.dq[3] = 1.0f;
             solver_bodies_.state[k] = s;
+            BodyStart start{};
+            put(start.v, b.v);
+            put(start.w, b.w());
+            solver_bodies_.start[k] = start;
             Vec3 inverse{1.0f / b.inertia.x, 1.0f / b.inertia.y, 1.0f / b.inertia.z};
             SymMat3 m = rotate_diagonal(rotation_matrix<float>(QuatT<float>(b.orientation), 1.0f), inverse);
             solver_bodies_.inertia[k] = {{m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}, 0.0f, 0.0f};
@@ -206,7 +208,7 @@ private:
             const BodyState& s = solver_bodies_.state[static_cast<size_t>(b.index)];
             b.position = b.position + get(s.dp);
             b.orientation = normalize(Quat{s.dq[0], s.dq[1], s.dq[2], s.dq[3]} * b.orientation);
-            b.v = get(s.v);
+            b.v = b.v + get(s.v);
             b.L = get(solver_bodies_.motion[static_cast<size_t>(b.index)].angular_momentum);
         }
         for (size_t i = 0; i < joints.size(); ++i) {  // all but what pack() turned and renumbered

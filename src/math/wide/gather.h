@@ -80,7 +80,8 @@ LENDULET_FORCE_INLINE float* floats_of(Record* records) {
 
 // out[k] lane i = base[index[i] * stride + offset + k], k = 0 .. 3; stride and offset in floats.
 template <int W>
-LENDULET_FORCE_INLINE void gather4(const float* base, const int32_t* index, int stride, int offset, Wide<float, W> out[4]) {
+LENDULET_FORCE_INLINE void gather4(const float* base, const int32_t* index, int stride, int offset,
+                                   Wide<float, W> out[4]) {
     using namespace detail;
     auto quad = [&](int i) { return load_quad(base + static_cast<ptrdiff_t>(index[i]) * stride + offset); };
     if constexpr (W == 1) {
@@ -106,7 +107,8 @@ LENDULET_FORCE_INLINE void gather4(const float* base, const int32_t* index, int 
 
 // The inverse of gather4; lanes that share an index must hold the same values.
 template <int W>
-LENDULET_FORCE_INLINE void scatter4(float* base, const int32_t* index, int stride, int offset, const Wide<float, W> in[4]) {
+LENDULET_FORCE_INLINE void scatter4(float* base, const int32_t* index, int stride, int offset,
+                                    const Wide<float, W> in[4]) {
     using namespace detail;
     if constexpr (W == 1) {
         float* p = base + static_cast<ptrdiff_t>(index[0]) * stride + offset;

@@ -23,8 +23,9 @@ LENDULET_FORCE_INLINE F arc_tangent_unit(F t) {
     return select(steep, splat<F>(0.25f * pi), splat<F>(0.0f)) + (u + u * (s * p));
 }
 
-// Angle of the point (x, y) from the x axis, in [-pi, pi], error below 4e-7 rad; 0 at the origin. Arguments whose larger
-// is below 1e-30 in size count as the origin. Name F at the call: for F = float the function of math.h would be chosen.
+// Angle of the point (x, y) from the x axis, in [-pi, pi], error below 4e-7 rad; 0 at the origin. Arguments whose
+// larger is below 1e-30 in size count as the origin. Name F at the call: for F = float the function of math.h would be
+// chosen.
 template <class F>
 LENDULET_FORCE_INLINE F arc_tangent2(F y, F x) {
     const F zero = splat<F>(0.0f);

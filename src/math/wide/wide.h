@@ -35,7 +35,10 @@ using Wide = typename detail::WideType<T, W>::Type;
 template <class F>
 inline constexpr int lanes_of = static_cast<int>(sizeof(F) / sizeof(float));
 template <class F>
-concept WideFloat = (sizeof(F) > sizeof(float)) && requires(F f) { f[0] = 0.0f; } && !std::is_pointer_v<F>;
+concept WideFloat = (sizeof(F) > sizeof(float)) && requires(F f) {
+    f[0] = 0.0f;
+}
+&&!std::is_pointer_v<F>;
 
 // All lanes the same.
 template <class F>
@@ -126,8 +129,7 @@ LENDULET_FORCE_INLINE Vec3T<F> absolute(Vec3T<F> a) {
 // Bit i is set where lane i of a mask is.
 LENDULET_FORCE_INLINE uint32_t mask_bits(bool mask) { return mask ? 1u : 0u; }
 template <class M>
-    requires(!std::is_same_v<M, bool>)
-LENDULET_FORCE_INLINE uint32_t mask_bits(M mask) {
+requires(!std::is_same_v<M, bool>) LENDULET_FORCE_INLINE uint32_t mask_bits(M mask) {
 #if defined(__AVX512DQ__)
     if constexpr (sizeof(M) == 64) return _mm512_movepi32_mask((__m512i)mask);
 #endif
