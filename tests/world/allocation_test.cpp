@@ -1,0 +1,126 @@
+// Memory: everything comes through the hook, a busy world's step takes none, and a dead world has given all back.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "world/support.h"
+
+namespace {
+
+std::atomic<long> heap_calls{0};  // of operator new, by anyone in this program
+
+void* from_heap(std::size_t bytes) {
+    heap_calls.fetch_add(1, std::memory_order_relaxed);
+    if (void* memory = std::malloc(bytes ? bytes : 1)) return memory;
+    std::abort();
+}
+
+}  // namespace
+
+// Counts what goes past the hook as well.
+void* operator new(std::size_t bytes) { return from_heap(bytes); }
+void* operator new[](std::size_t bytes) { return from_heap(bytes); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace lendulet::testing {
+namespace {
+
+struct Counter {
+    std::atomic<long> allocations{0}, frees{0}, live_bytes{0}, misaligned{0};
+
+    AllocatorHook hook() {
+        return {this,
+                [](void* user, size_t bytes, size_t alignment) {
+                    Counter& c = *static_cast<Counter*>(user);
+                    c.allocations.fetch_add(1);
+                    c.live_bytes.fetch_add(static_cast<long>(bytes));
+                    size_t rounded = (bytes + alignment - 1) / alignment * alignment;
+                    return std::aligned_alloc(alignment, rounded);
+                },
+                [](void* user, void* memory, size_t bytes, size_t alignment) {
+                    Counter& c = *static_cast<Counter*>(user);
+                    c.frees.fetch_add(1);
+                    c.live_bytes.fetch_sub(static_cast<long>(bytes));
+                    if (reinterpret_cast<uintptr_t>(memory) % alignment) c.misaligned.fetch_add(1);
+                    std::free(memory);
+                }};
+    }
+};
+
+class Allocation : public ::testing::TestWithParam<int> {};
+
+TEST_P(Allocation, SettledPileTakesNoMemory) {
+    Counter counter;
+    {
+        World world = WorldBuilder{}.sleep(false).workers(GetParam()).allocator(counter.hook()).build().value();
+        add_mixed_pile(world, 5);
+        run(world, 200);  // until the pile lies
+        ASSERT_GT(world.statistics().contact_points, 100);
+        ASSERT_GT(world.statistics().joints, 3);
+        EXPECT_GT(counter.allocations.load(), 10);
+        long hooked = counter.allocations.load(), heap = heap_calls.load();
+        for (int i = 0; i < 60; ++i) {
+            Status status = world.update(dt);
+            if (!status) break;  // without a message being built while we count
+        }
+        EXPECT_EQ(heap_calls.load(), heap) << "operator new was called in a step";
+        EXPECT_EQ(counter.allocations.load(), hooked) << "the hook was asked for memory in a step";
+        EXPECT_EQ(world.step_count(), 260u);
+        EXPECT_GT(counter.live_bytes.load(), 0);
+    }
+    EXPECT_EQ(counter.allocations.load(), counter.frees.load());
+    EXPECT_EQ(counter.live_bytes.load(), 0);
+    EXPECT_EQ(counter.misaligned.load(), 0);
+}
+INSTANTIATE_TEST_SUITE_P(Workers, Allocation, ::testing::Values(1, 2));
+
+// Sleeping, waking, and falling asleep again reuse what is there.
+TEST(AllocationAfterWarmUp, SleepAndWakeTakeNoMemory) {
+    Counter counter;
+    World world = WorldBuilder{}.allocator(counter.hook()).build().value();
+    add_floor(world);
+    std::vector<BodyId> stack = add_stack(world, 0.0f, 4);
+    run(world, 200);
+    long hooked = counter.allocations.load(), heap = heap_calls.load();
+    for (int round = 0; round < 3; ++round) {
+        Status pushed = world.get(stack[0]).apply_impulse({10.0f, 0.0f, 0.0f});
+        for (int i = 0; i < 60 && pushed; ++i) pushed = world.update(dt);
+    }
+    EXPECT_EQ(heap_calls.load(), heap);
+    EXPECT_EQ(counter.allocations.load(), hooked);
+    EXPECT_EQ(world.step_count(), 380u);
+}
+
+TEST(AllocationAfterWarmUp, RemovedBodiesMakeRoomForNewOnes) {
+    Counter counter;
+    World world = WorldBuilder{}.allocator(counter.hook()).build().value();
+    add_floor(world);
+    std::vector<BodyId> stack = add_stack(world, 0.0f, 8);
+    run(world, 60);
+    auto rebuild = [&] {
+        for (BodyId id : stack) world.remove_body(id).value();
+        stack = add_stack(world, 0.0f, 8);
+        run(world, 60);
+    };
+    rebuild();
+    long hooked = counter.allocations.load();
+    for (int round = 0; round < 5; ++round) rebuild();
+    EXPECT_EQ(counter.allocations.load(), hooked);
+}
+
+TEST(AllocatorHooks, NeedBothFunctions) {
+    Counter counter;
+    AllocatorHook half = counter.hook();
+    half.free = nullptr;
+    Result<World> world = WorldBuilder{}.allocator(half).build();
+    ASSERT_FALSE(world);
+    EXPECT_EQ(world.error().code, ErrorCode::bad_config);
+}
+
+}  // namespace
+}  // namespace lendulet::testing
