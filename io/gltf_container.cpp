@@ -18,9 +18,37 @@ Json pick(const Field& from, std::initializer_list<const char*> members) {
     return out;
 }
 
-Json pick_each(const Field& array, std::initializer_list<const char*> members) {
+// Copies members that are whole numbers of at least 0, so that what comes after reads nothing else.
+void pick_counts(const Field& from, Json& out, std::initializer_list<const char*> members) {
+    for (const char* member : members) {
+        if (Field value = from[member]) out[member] = value.count();
+    }
+}
+
+Json pick_views(const Field& views, size_t buffer_count) {
     Json out = Json::array();
-    for (size_t i = 0; i < array.size(); ++i) out.push_back(pick(array.at(i), members));
+    for (size_t i = 0; i < views.size(); ++i) {
+        Field view = views.at(i);
+        Json kept = Json::object();
+        kept["buffer"] = view["buffer"].index(buffer_count, "buffers");
+        kept["byteLength"] = view["byteLength"].count();
+        pick_counts(view, kept, {"byteOffset", "byteStride"});
+        out.push_back(std::move(kept));
+    }
+    return out;
+}
+
+Json pick_accessors(const Field& accessors, size_t view_count) {
+    Json out = Json::array();
+    for (size_t i = 0; i < accessors.size(); ++i) {
+        Field accessor = accessors.at(i);
+        Json kept = pick(accessor, {"type", "normalized", "sparse"});
+        if (Field view = accessor["bufferView"]) kept["bufferView"] = view.index(view_count, "bufferViews");
+        kept["componentType"] = accessor["componentType"].index(5127, "the component types");
+        kept["count"] = accessor["count"].count();
+        pick_counts(accessor, kept, {"byteOffset"});
+        out.push_back(std::move(kept));
+    }
     return out;
 }
 
@@ -35,7 +63,9 @@ Json pick_meshes(const Field& meshes, size_t accessor_count, std::vector<bool>& 
             Field primitive = primitives.at(j);
             is_compressed |= primitive["extensions"]["KHR_draco_mesh_compression"].present();
             if (is_compressed) continue;
-            Json part = pick(primitive, {"indices", "mode"});
+            Json part = Json::object();
+            if (Field indices = primitive["indices"]) part["indices"] = indices.index(accessor_count, "accessors");
+            if (Field mode = primitive["mode"]) part["mode"] = mode.index(7, "the modes");
             part["attributes"] = Json::object();
             if (Field position = primitive["attributes"]["POSITION"]) {
                 part["attributes"]["POSITION"] = position.index(accessor_count, "accessors");
@@ -75,13 +105,12 @@ Json reduced_document(const Field& root, std::vector<bool>& compressed) {
     out["buffers"] = Json::array();
     Field buffers = root["buffers"];
     for (size_t i = 0; i < buffers.size(); ++i) {
-        Json buffer = pick(buffers.at(i), {"byteLength"});
+        Json buffer{{"byteLength", buffers.at(i)["byteLength"].count()}};
         buffer["uri"] = std::to_string(i);
         out["buffers"].push_back(std::move(buffer));
     }
-    out["bufferViews"] = pick_each(root["bufferViews"], {"buffer", "byteOffset", "byteLength", "byteStride"});
-    out["accessors"] = pick_each(
-        root["accessors"], {"bufferView", "byteOffset", "componentType", "count", "type", "normalized", "sparse"});
+    out["bufferViews"] = pick_views(root["bufferViews"], buffers.size());
+    out["accessors"] = pick_accessors(root["accessors"], root["bufferViews"].size());
     out["meshes"] = pick_meshes(root["meshes"], root["accessors"].size(), compressed);
     return out;
 }

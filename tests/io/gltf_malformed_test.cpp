@@ -146,15 +146,16 @@ TEST(GltfMalformed, AccessorsAndBuffers) {
     refused(mesh_text(accessor("4"), view36, triangle), "accessors[0]: reaches past the end of bufferViews[0]");
     refused(mesh_text(accessor("4000000000"), view36, triangle), "reaches past the end");
     refused(mesh_text(accessor("0"), view36, triangle), "count of 0");
-    refused(mesh_text(accessor("1e30"), view36, triangle), "");
+    refused(mesh_text(accessor("1e30"), view36, triangle), "accessors[0].count: must be a whole number");
     refused(mesh_text(accessor("3", ",'byteOffset':4"), view36, triangle), "reaches past the end");
-    refused(mesh_text(accessor("3", ",'byteOffset':18446744073709551615"), view36, triangle), "");
+    refused(mesh_text(accessor("3", ",'byteOffset':18446744073709551615"), view36, triangle), "must be a whole number");
     refused(mesh_text("{'bufferView':5,'componentType':5126,'count':3,'type':'VEC3'}", view36, triangle),
-            "bufferViews[5], which is not there");
+            "accessors[0].bufferView: names element 5 of bufferViews, which has 1");
     refused(mesh_text("{'bufferView':0,'componentType':5126,'count':3,'type':'VEC2'}", view36, triangle),
             "is not of the type");
     EXPECT_NE(refusal(mesh_text("{'bufferView':0,'componentType':77,'count':3,'type':'VEC3'}", view36, triangle)), "");
-    refused(mesh_text(vec3, "{'buffer':3,'byteLength':36}", triangle), "buffers[3]");
+    refused(mesh_text(vec3, "{'buffer':3,'byteLength':36}", triangle),
+            "bufferViews[0].buffer: names element 3 of buffers");
     refused(mesh_text(vec3, "{'buffer':0,'byteLength':37}", triangle), "reaches past the end of buffers[0]");
     refused(mesh_text(vec3, "{'buffer':0,'byteLength':36,'byteOffset':4294967295}", triangle), "reaches past the end");
     refused(mesh_text(vec3, "{'buffer':0,'byteLength':36,'byteStride':8}", triangle), "byteStride");
@@ -162,7 +163,8 @@ TEST(GltfMalformed, AccessorsAndBuffers) {
     refused(mesh_text(vec3, view36, "{'byteLength':99,'uri':'data:a/b;base64,AAAA'}"), "holds no 99 bytes");
     refused(mesh_text(vec3, view36, "{'byteLength':3,'uri':'data:a/b;base64,!!!!'}"), "holds no 3 bytes");
     refused(mesh_text(vec3, view36, "{'byteLength':36,'uri':'data:text/plain,hello'}"), "without base64");
-    refused(mesh_text(vec3, view36, "{'byteLength':1e15,'uri':'data:a/b;base64,AAAA'}"), "holds no");
+    refused(mesh_text(vec3, view36, "{'byteLength':1e15,'uri':'data:a/b;base64,AAAA'}"),
+            "holds no 1000000000000000 bytes");
     refused(mesh_text(vec3, view36, "{'byteLength':36,'uri':'missing.bin'}"), "no such file");
     // NaN and infinity as coordinates
     refused(mesh_text(vec3, view36,
@@ -231,7 +233,7 @@ TEST(GltfBinary, ChunksAreRead) {
     EXPECT_NE(refusal(glb(json, bytes.substr(0, 20))).find("buffers[0]: has 20 of 36 bytes"), std::string::npos);
     EXPECT_NE(refusal(glb(json, bytes, 100)).find("ends after"), std::string::npos);
     EXPECT_NE(refusal(glb(json, bytes, 0, 1 << 20)).find("ends inside GLB chunk 0"), std::string::npos);
-    EXPECT_NE(refusal(glb(json, bytes, 0, 0xffffff00u)).find(""), std::string::npos);
+    EXPECT_NE(refusal(glb(json, bytes, 0, 0xfffffff0u)), "");
     std::string other = glb(json, bytes);
     other[4] = 3;
     EXPECT_NE(refusal(other).find("is GLB version 3"), std::string::npos);
