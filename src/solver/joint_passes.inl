@@ -76,6 +76,7 @@ LENDULET_FORCE_INLINE void solve_locked(JointRow<W, C>& c, const JointPair<Wide<
         }
     c.mass.solve(change);
     for (int i = 0; i < S::locked; ++i) {
+        change[i] = c.relaxation * change[i];
         if constexpr (biased) change[i] = change[i] - c.leak * c.impulse[0][i];
         c.impulse[biased ? 0 : 1][i] = c.impulse[biased ? 0 : 1][i] + change[i];
     }
@@ -83,26 +84,27 @@ LENDULET_FORCE_INLINE void solve_locked(JointRow<W, C>& c, const JointPair<Wide<
 
 // The limit of one bounded row with velocity v: within the substep its coordinate may just reach a bound, or a share of
 // what it is beyond is undone. Both bounds in one: the impulse without which the velocity lies between the two bounds'.
-template <bool biased, class Row, class F>
-LENDULET_FORCE_INLINE F solve_limit(Row& row, const SubstepConstants& k, F bias, F leak, F v) {
-    const F zero = splat<F>(0.0f), inverse_h = splat<F>(k.inverse_h);
+// In the relax pass that impulse is the one of both passes together.
+template <bool biased, class Row, class Joint, class F>
+LENDULET_FORCE_INLINE F solve_limit(Row& row, const Joint& c, const SubstepConstants& k, F v) {
+    const F zero = splat<F>(0.0f), inverse_h = splat<F>(k.inverse_h), most = splat<F>(joint_push_speed);
     F below = row.lower - row.coordinate, above = row.upper - row.coordinate;  // <= 0 and >= 0 within
-    F rate = biased ? bias * inverse_h : zero;
-    F slowest = select(below > zero, minimum(rate * below, splat<F>(joint_push_speed)), below * inverse_h);
-    F fastest = select(above < zero, maximum(rate * above, splat<F>(-joint_push_speed)), above * inverse_h);
-    F other = zero;  // in the relax pass the bounds are those of both passes' impulses together
-    if constexpr (!biased) other = row.limit[0];
-    F held = other + row.limit[biased ? 0 : 1];
-    F without = v - row.rate * held;
-    F total = inverse_or_zero(row.rate) * (maximum(minimum(without, fastest), slowest) - without);
-    if constexpr (biased) {
-        F leaky = total - leak * held;
-        total = select(total > zero, maximum(leaky, zero), select(total < zero, minimum(leaky, zero), zero));
-    }
+    F rate = zero, other = zero;
+    if constexpr (biased) rate = c.bias * inverse_h;
+    else other = row.limit[0];
+    F slowest = select(below > zero, minimum(rate * below, most), below * inverse_h);
+    F fastest = select(above < zero, maximum(rate * above, zero - most), above * inverse_h);
     F& own = row.limit[biased ? 0 : 1];
-    F change = (total - other) - own;
+    F held = other + own, without = v - row.rate * held;
+    F total = inverse_or_zero(row.rate) * (maximum(minimum(without, fastest), slowest) - without);
+    F kept = select(held * total > zero, held, zero);  // a bound that is left lets go at once
+    total = kept + c.relaxation * (total - kept);
+    if constexpr (biased) {
+        F leaky = total - c.leak * kept;
+        total = select(total > zero, maximum(leaky, zero), minimum(leaky, zero));
+    }
     own = total - other;
-    return change;
+    return total - held;
 }
 
 // Spring and motor of the driven row. The spring is the implicit midpoint rule, which neither gains nor loses energy:
@@ -120,8 +122,8 @@ LENDULET_FORCE_INLINE Wide<float, W> solve_drive(JointRow<W, C>& c, const Subste
         F without = v - row.rate * c.spring;
         F pull = soft * without + h * c.stiffness * (row.coordinate - c.target);
         F next = maximum(minimum((zero - pull) / (soft * row.rate + one), most), zero - most);
-        change = next - c.spring;
-        c.spring = next;
+        change = c.relaxation * (next - c.spring);
+        c.spring = c.spring + change;
     }
     F most = splat<F>(k.h) * c.motor_force, before = zero;
     if constexpr (biased) most = share * most;
@@ -129,9 +131,9 @@ LENDULET_FORCE_INLINE Wide<float, W> solve_drive(JointRow<W, C>& c, const Subste
     F& motor = c.motor[biased ? 0 : 1];
     F wanted = motor + inverse_rate * (c.motor_velocity - (v + row.rate * change));
     F next = maximum(minimum(wanted, most - before), zero - (most + before));
-    change = change + (next - motor);
-    motor = next;
-    return change;
+    F turn = c.relaxation * (next - motor);
+    motor = motor + turn;
+    return change + turn;
 }
 
 // Bounded rows one after the other, each with the locked rows held still.
@@ -148,7 +150,7 @@ LENDULET_FORCE_INLINE void solve_bounded(JointRow<W, C>& c, const JointPair<Wide
         if (j == 1) v = v + c.coupling * passed;
         F change = splat<F>(0.0f);
         if constexpr (S::driven) change = solve_drive<W, C, biased>(c, k, v);
-        change = change + solve_limit<biased>(c.row[j], k, c.bias, c.leak, v + c.row[j].rate * change);
+        change = change + solve_limit<biased>(c.row[j], c, k, v + c.row[j].rate * change);
         for (int i = 0; i < S::locked; ++i) {
             F back = c.row[j].response[i] * change;
             x.locked[i] = x.locked[i] - back;
@@ -189,7 +191,7 @@ LENDULET_FORCE_INLINE void joint_pass(JointRow<W, C>& c, const JointGroup& g, So
     constexpr bool biased = pass == JointPass::solve;
     JointPair<F> pair = load_pair<W, C>(c, bodies, biased);
     if (pass == JointPass::warm_relax || (pass == JointPass::warm_start && k.moved))
-        update_joint<W, C>(c, bodies, pair);
+        update_joint<W, C>(c, bodies, pair.IA, pair.IB, pair.A.inverse_mass + pair.B.inverse_mass);
     JointChange<W, C> x;
     Vec3T<F> linear, angular;
     if constexpr (pass == JointPass::solve || pass == JointPass::relax) {

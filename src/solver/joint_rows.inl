@@ -1,8 +1,8 @@
 // Joint rows: W joints of one class side by side, and how they follow the bodies. Part of kernels.inl.
 //
-// Both bodies get every impulse at one shared world point: half way between the two anchors, or at B's anchor for
-// sliders, whose anchors are meant to be apart. Linear and angular momentum are therefore conserved together. Arms,
-// axes and effective masses are taken anew in every substep, from the displacement since the start of the step.
+// Both bodies get every impulse at one shared world point: half way between the two anchors, or between B's anchor and
+// the axis for sliders. Linear and angular momentum are therefore conserved together. Arms, axes and effective masses
+// are taken anew in every substep, from the displacement since the start of the step.
 
 template <JointClass C>
 struct JointShape {
@@ -62,6 +62,7 @@ struct alignas(64) JointRow : std::conditional_t<(JointShape<C>::directions > 0)
     Factor<F, locked> mass;
     F impulse[2][locked];  // of the biased pass and of the relax pass
     F bias, leak;          // shares of the gap undone and of the impulse given up in a biased pass
+    F relaxation;          // share of its solution that the joint takes in a pass
     F split;               // 1: half of the applied forces' share acts in each pass; 0: all of it in the biased pass
 };
 
@@ -182,8 +183,8 @@ LENDULET_FORCE_INLINE void factor_bounded(JointRow<W, C>& c, const PointResponse
 
 // Brings a row up to date with its bodies. Not inlined: it is called from several passes, and long.
 template <int W, JointClass C>
-[[gnu::noinline]] void update_joint(JointRow<W, C>& c, const SolverBodies& bodies,
-                                    const JointPair<Wide<float, W>>& pair) {
+[[gnu::noinline]] void update_joint(JointRow<W, C>& c, const SolverBodies& bodies, const SymMat3T<Wide<float, W>>& IA,
+                                    const SymMat3T<Wide<float, W>>& IB, const Wide<float, W>& inverse_masses) {
     using F = Wide<float, W>;
     using S = JointShape<C>;
     Vec3T<F> dpa, dpb;
@@ -194,18 +195,20 @@ template <int W, JointClass C>
     c.gap = c.gap0 + ((dpb - dpa) + (tb - ta));
     c.ra = c.ra0 + ta;
     c.rb = c.rb0 + tb;
-    if constexpr (S::slider) {
-        c.ra = c.ra + c.gap;
-    } else {  // half the gap to each, but no more than the arms are long: torn joints must not get endless levers
-        F arms = dot(c.ra, c.ra) + dot(c.rb, c.rb), gap = dot(c.gap, c.gap);
-        F share =
-            splat<F>(0.5f) * select(gap > arms, square_root(arms / maximum(gap, splat<F>(1e-30f))), splat<F>(1.0f));
-        c.ra = c.ra + share * c.gap;
-        c.rb = c.rb - share * c.gap;
-    }
     if constexpr (S::directions > 0) update_axes<W, C>(c, dqa, dqb);
-    if constexpr (S::slider) c.row[0].coordinate = dot(c.direction[2], c.gap);
-    auto response = point_response(c.ra, c.rb, pair.IA, pair.IB, pair.A.inverse_mass + pair.B.inverse_mass);
+    Vec3T<F> error = c.gap;
+    if constexpr (S::slider) {
+        c.row[0].coordinate = dot(c.direction[2], c.gap);
+        error = c.gap - c.row[0].coordinate * c.direction[2];
+        c.ra = c.ra + (c.gap - error);
+    }
+    // Half the error to each, but no more than the arms are long: torn joints must not get endless levers.
+    F arms = dot(c.ra, c.ra) + dot(c.rb, c.rb), size = dot(error, error);
+    F share = select(size > arms, square_root(arms / maximum(size, splat<F>(1e-30f))), splat<F>(1.0f));
+    error = (splat<F>(0.5f) * share) * error;
+    c.ra = c.ra + error;
+    c.rb = c.rb - error;
+    auto response = point_response(c.ra, c.rb, IA, IB, inverse_masses);
     factor_locked<W, C>(c, response);
     if constexpr (S::bounded > 0) factor_bounded<W, C>(c, response);
 }
@@ -317,8 +320,9 @@ LENDULET_FORCE_INLINE void prepare_joint(JointRow<W, C>& c, const JointGroup& gr
         c.frame_a = multiply(q0a, JointQuads<W>(records, index, joint_frame_a).quat());
         c.frame_b = multiply(q0b, JointQuads<W>(records, index, joint_frame_b).quat());
     }
+    JointQuads<W> limits(records, index, joint_limits);
+    c.relaxation = limits.q[2];
     if constexpr (S::bounded > 0) {
-        JointQuads<W> limits(records, index, joint_limits);
         c.row[S::bounded - 1].lower = limits.q[0];
         c.row[S::bounded - 1].upper = limits.q[1];
         if constexpr (S::limited_ball) c.row[0].lower = splat<F>(-unlimited), c.row[0].upper = arm_a.q[3];
@@ -337,5 +341,6 @@ LENDULET_FORCE_INLINE void prepare_joint(JointRow<W, C>& c, const JointGroup& gr
         if constexpr (S::driven)
             set_lane(c.motor[0], l, 0.0f), set_lane(c.motor[1], l, 0.0f), set_lane(c.spring, l, 0.0f);
     }
-    update_joint<W, C>(c, bodies, load_pair<W, C>(c, bodies, false));
+    JointPair<F> pair = load_pair<W, C>(c, bodies, false);
+    update_joint<W, C>(c, bodies, pair.IA, pair.IB, pair.A.inverse_mass + pair.B.inverse_mass);
 }

@@ -1,5 +1,7 @@
 #include "solver/joint_schedule.h"
 
+#include "lendulet/math.h"
+
 namespace lendulet {
 namespace {
 
@@ -77,6 +79,8 @@ void JointSchedule::set_modes(JointRecord* records, int count, SolverBodies& bod
         size_t a = static_cast<size_t>(r.body_a), b = static_cast<size_t>(r.body_b);
         bool split = !touched_[moved(bodies, r.body_b) ? b : a];
         bool alone = split && joint_count_[a] <= 1 && joint_count_[b] <= 1;
+        uint32_t crowd = joint_count_[a] > joint_count_[b] ? joint_count_[a] : joint_count_[b];
+        r.relaxation = minimum(1.0f, joint_crowd / static_cast<float>(crowd));
         r.flags = (split ? joint_split : 0u) | (alone ? joint_alone : 0u);
     }
 }
