@@ -61,7 +61,7 @@ inline constexpr float joint_leak = 0.1f;
 // Joints of a body with more joints than this take smaller shares of their solution: with 40 long-armed joints on a
 // light body full shares blow up within ten steps.
 inline constexpr float joint_crowd = 4.0f;
-// Fastest that a gap is closed, m/s or rad/s.
+// Fastest that a gap is closed, and that the motion's curvature is met in advance, m/s or rad/s.
 inline constexpr float joint_push_speed = 10.0f;
 
 }  // namespace lendulet

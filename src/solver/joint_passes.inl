@@ -56,14 +56,17 @@ LENDULET_FORCE_INLINE void solve_locked(JointRow<W, C>& c, const JointPair<Wide<
     using F = Wide<float, W>;
     using S = JointShape<C>;
     const F zero = splat<F>(0.0f);
-    F rate = c.bias * splat<F>(k.inverse_h);
-    auto push = [&](F gap) {
-        return maximum(minimum(rate * gap, splat<F>(joint_push_speed)), splat<F>(-joint_push_speed));
+    const F most = splat<F>(joint_push_speed), rate = c.bias * splat<F>(k.inverse_h), half_h = splat<F>(0.5f * k.h);
+    auto limited = [&](F speed) { return maximum(minimum(speed, most), zero - most); };
+    auto push = [&](F gap) { return limited(rate * gap); };
+    // What turns fast enough to reach this limit is not resolved by the substep; without it, errors would feed
+    // themselves.
+    auto ahead = [&](Vec3T<F> curvature) {
+        return Vec3T<F>{limited(half_h * curvature.x), limited(half_h * curvature.y), limited(half_h * curvature.z)};
     };
     if constexpr (biased) {
-        sliding =
-            sliding + splat<F>(0.5f * k.h) * sliding_curvature(p, c.ra, c.rb, S::slider ? sliding : zero_vector<F>());
-        turning = turning + splat<F>(0.5f * k.h) * turning_curvature(p);
+        sliding = sliding + ahead(sliding_curvature(p, c.ra, c.rb, S::slider ? sliding : zero_vector<F>()));
+        turning = turning + ahead(turning_curvature(p));
     }
     for (int i = 0; i < S::linear; ++i) {
         change[i] = zero - along_row<W, C>(c, i, sliding);
