@@ -24,7 +24,8 @@ enum class ErrorCode : uint8_t {
     bad_time_step,      // negative or non-finite step
     bad_joint,          // limits reversed, zero axis, same body twice
     no_dynamic_body,    // a joint between two bodies that cannot move
-    stale_id,           // the body, collider or joint was removed, or belongs to another world
+    stale_id,           // the body, collider or joint was removed
+    wrong_world,        // a handle that another world gave out
     bad_config,         // a world setting out of range
     bad_query,          // zero or non-finite direction
     locked,             // called from inside a step

@@ -123,9 +123,9 @@ public:
     // shape_not_dynamic, out_of_world. On an error nothing has changed.
     Result<BodyId> add_rigid_body(const RigidBodyDef& def);
     Result<BodyId> add_static_body(const StaticBodyDef& def);
-    // Removes the body with its colliders and joints. Error: stale_id.
+    // Removes the body with its colliders and joints. Errors: stale_id, wrong_world.
     Status remove_body(BodyId id);
-    // Errors: stale_id, bad_joint, no_dynamic_body, non_finite.
+    // Errors: stale_id, wrong_world, bad_joint, no_dynamic_body, non_finite.
     Result<JointId> add_joint(const JointDef& def);
     Status remove_joint(JointId id);
     Status set_motor(JointId id, Motor motor);
@@ -133,6 +133,7 @@ public:
     Result<JointDef> joint_at(JointType type, BodyId a, BodyId b, Position anchor,
                               Vec3 axis = {1.0f, 0.0f, 0.0f}) const;
 
+    // False for handles of removed bodies and joints and for those of other worlds.
     bool alive(BodyId id) const;
     bool alive(JointId id) const;
     // Views; a stale id, or get() on a static body, ends the program with a sentence: ask alive() where it may be

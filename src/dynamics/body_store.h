@@ -42,6 +42,7 @@ struct BodyChange {
 struct BodyInfo {
     BodyType type = BodyType::fixed;
     bool asleep = false, allow_sleep = true, has_forces = false;
+    bool placed = true;  // added or put somewhere by hand since the last step
     bool capped = false, contained = false;  // in the last step: speed cut; state went non-finite and was put back
     float gravity_factor = 1.0f, linear_damping = 0.0f, angular_damping = 0.0f;
     float still_time = 0.0f;  // how long it has been slow, s
@@ -63,8 +64,8 @@ struct BodyStore {
     Array<Transform> principal;  // principal frame in the user's body frame
     std::vector<std::string> name;
 
-    explicit BodyStore(const Memory* memory)
-        : slots(memory),
+    BodyStore(const Memory* memory, uint32_t world)
+        : slots(memory, world),
           pose(memory),
           momenta(memory),
           mass(memory),

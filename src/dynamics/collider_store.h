@@ -54,8 +54,8 @@ struct ColliderStore {
     std::vector<Shape> shape;      // as given, keeps shared hulls and meshes alive
     std::vector<Transform> given;  // as given, in the user's body frame
 
-    explicit ColliderStore(const Memory* memory)
-        : slots(memory), geometry(memory), local(memory), surface(memory), info(memory), place(memory) {}
+    ColliderStore(const Memory* memory, uint32_t world)
+        : slots(memory, world), geometry(memory), local(memory), surface(memory), info(memory), place(memory) {}
 
     uint32_t add();
     ColliderId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }

@@ -55,8 +55,8 @@ struct JointStore {
     Array<JointReport> report;
     std::vector<std::string> name;
 
-    explicit JointStore(const Memory* memory)
-        : slots(memory), info(memory), impulses(memory), report(memory), next_(memory), first_(memory) {}
+    JointStore(const Memory* memory, uint32_t world)
+        : slots(memory, world), info(memory), impulses(memory), report(memory), next_(memory), first_(memory) {}
 
     // A new joint; hangs it on both bodies.
     uint32_t add(const JointInfo& joint, std::string_view name);

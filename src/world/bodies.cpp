@@ -254,9 +254,9 @@ Result<BodyId> World::add_static_body(const StaticBodyDef& def) {
 
 Status World::remove_body(BodyId id) {
     WorldData& world = *data_;
-    if (!world.bodies.alive(id)) return Error{ErrorCode::stale_id, "remove_body: there is no such body any more"};
+    if (!world.bodies.alive(id)) return no_such(world.bodies.slots, id.generation, "remove_body", "body");
     uint32_t slot = id.index;
-    wake_body(world, slot);  // what rested on it falls
+    wake_touching(world, slot);  // what rested on it falls
     remove_joints_of(world, slot);
     if (world.bodies.info[slot].type == BodyType::fixed) world.fixed_changed = true;
     for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot;) {

@@ -22,9 +22,10 @@ void join(Array<uint32_t>& parent, uint32_t a, uint32_t b) {
     if (a != b) parent[a > b ? a : b] = a > b ? b : a;  // the smaller slot leads: independent of the order of contacts
 }
 
-bool moves(const WorldData& world, uint32_t slot) {
+// A static or kinematic body that does not leave in peace what rests on it.
+bool disturbs(const WorldData& world, uint32_t slot) {
     const BodyMomenta& m = world.bodies.momenta[slot];
-    return length_squared(m.p) + length_squared(m.L) > 0.0f;
+    return world.bodies.info[slot].placed || length_squared(m.p) + length_squared(m.L) > 0.0f;
 }
 
 float surface_speed(const BodyStore& bodies, uint32_t slot) {
@@ -38,8 +39,11 @@ void set_awake(BodyInfo& info) {
 }  // namespace
 
 void wake_body(WorldData& world, uint32_t slot) {
-    set_awake(world.bodies.info[slot]);
+    world.bodies.info[slot].asleep = false;
     world.bodies.info[slot].still_time = 0.0f;
+}
+
+void wake_touching(WorldData& world, uint32_t slot) {
     for (uint32_t i : world.touching) {
         const ColliderPair& p = world.pairs.now[world.records[i].pair];
         uint32_t a = world.colliders.info[p.a].body, b = world.colliders.info[p.b].body;
@@ -57,9 +61,9 @@ void update_islands(WorldData& world, float dt) {
     auto link = [&](uint32_t a, uint32_t b) {
         bool moving_a = bodies.info[a].type == BodyType::dynamic, moving_b = bodies.info[b].type == BodyType::dynamic;
         if (moving_a && moving_b) join(parent, a, b);
-        // A kinematic body in motion wakes what it touches.
-        else if (moving_a && bodies.info[b].type == BodyType::kinematic && moves(world, b)) set_awake(bodies.info[a]);
-        else if (moving_b && bodies.info[a].type == BodyType::kinematic && moves(world, a)) set_awake(bodies.info[b]);
+        // A kinematic body in motion wakes what it touches, and so does whatever has just been put there.
+        else if (moving_a && disturbs(world, b)) set_awake(bodies.info[a]);
+        else if (moving_b && disturbs(world, a)) set_awake(bodies.info[b]);
     };
     for (uint32_t i : world.touching) {
         const ColliderPair& p = world.pairs.now[world.records[i].pair];
@@ -82,6 +86,7 @@ void update_islands(WorldData& world, float dt) {
     }
     for (uint32_t slot : bodies.slots.order()) {
         BodyInfo& info = bodies.info[slot];
+        info.placed = false;
         if (info.type != BodyType::dynamic) continue;
         bool rest = still[root(parent, slot)] >= sleep_time;
         if (rest && !info.asleep) {

@@ -19,8 +19,8 @@ Error bad_joint(const char* call, std::string what) { return refused(ErrorCode::
 // --- checks
 
 Status check_bodies(const WorldData& world, BodyId a, BodyId b, const char* call) {
-    if (!world.bodies.alive(a)) return refused(ErrorCode::stale_id, call, "there is no body A any more");
-    if (!world.bodies.alive(b)) return refused(ErrorCode::stale_id, call, "there is no body B any more");
+    if (!world.bodies.alive(a)) return no_such(world.bodies.slots, a.generation, call, "body A");
+    if (!world.bodies.alive(b)) return no_such(world.bodies.slots, b.generation, call, "body B");
     if (a == b) return bad_joint(call, "body A and body B are the same");
     auto moved = [&](BodyId id) { return world.bodies.info[id.index].type == BodyType::dynamic; };
     if (!moved(a) && !moved(b))
@@ -232,7 +232,7 @@ Result<JointId> World::add_joint(const JointDef& def) {
 
 Status World::remove_joint(JointId id) {
     if (!data_->joints.alive(id))
-        return refused(ErrorCode::stale_id, "remove_joint", "there is no such joint any more");
+        return no_such(data_->joints.slots, id.generation, "remove_joint", "joint");
     remove_joint_at(*data_, id.index);
     return {};
 }
@@ -240,7 +240,7 @@ Status World::remove_joint(JointId id) {
 Status World::set_motor(JointId id, Motor motor) {
     constexpr const char* call = "set_motor";
     WorldData& world = *data_;
-    if (!world.joints.alive(id)) return refused(ErrorCode::stale_id, call, "there is no such joint any more");
+    if (!world.joints.alive(id)) return no_such(world.joints.slots, id.generation, call, "joint");
     JointInfo& j = world.joints.info[id.index];
     if (j.type != JointType::hinge && j.type != JointType::slider)
         return bad_joint(call, "only hinges and sliders have a motor");
@@ -280,7 +280,7 @@ JointId World::joint_id(int index) const {
 }
 
 JointState World::joint(JointId id) const {
-    if (!alive(id)) detail::fail({ErrorCode::stale_id, "joint: there is no such joint any more"});
+    if (!alive(id)) detail::fail(no_such(data_->joints.slots, id.generation, "joint", "joint"));
     const WorldData& world = *data_;
     const JointInfo& j = world.joints.info[id.index];
     const JointReport& report = world.joints.report[id.index];

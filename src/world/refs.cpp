@@ -93,8 +93,10 @@ Status RigidBodyRef::set_pose(Position position, Quat orientation) {
     Status place = valid_position(position, "set_pose");
     if (!place) return place;
     wake();
+    wake_touching(*world_, slot_);  // what it leaves behind
     world_->bodies.set_user_pose(slot_, {position, q.value()});
     world_->bodies.change[slot_] = {};
+    world_->bodies.info[slot_].placed = true;
     return {};
 }
 Status RigidBodyRef::set_velocity(Vec3 v) {

@@ -33,4 +33,10 @@ Status valid_position(Position p, const char* call) {
     return {};
 }
 
+Error no_such(const Slots& slots, uint32_t generation, const char* call, const char* what) {
+    if (slots.foreign(generation))
+        return {ErrorCode::wrong_world, std::string(call) + ": that " + what + " belongs to another world"};
+    return {ErrorCode::stale_id, std::string(call) + ": there is no such " + what + " any more"};
+}
+
 }  // namespace lendulet

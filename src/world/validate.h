@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "dynamics/slots.h"
 #include "lendulet/math.h"
 #include "lendulet/result.h"
 
@@ -15,6 +16,8 @@ inline bool is_finite(Vec3 v) { return is_finite(v.x) && is_finite(v.y) && is_fi
 Result<Quat> unit_quaternion(Quat q, const char* call);
 // Finite and within the extent of the world.
 Status valid_position(Position p, const char* call);
+// Refusal of a handle of this generation that is not alive: removed, of another world, or never given out.
+Error no_such(const Slots& slots, uint32_t generation, const char* call, const char* what);
 // Number as text for messages.
 std::string text(float value);
 

@@ -1,6 +1,8 @@
 // Worlds: settings, handles, iteration, figures.
 #include "lendulet/world.h"
 
+#include <atomic>
+
 #include "base/hash.h"
 #include "world/validate.h"
 #include "world/world_data.h"
@@ -11,6 +13,12 @@ namespace {
 TaskPool::Hook task_hook(const WorldConfig& c) { return {c.tasks.user, c.tasks.workers, c.tasks.parallel_for}; }
 
 constexpr float max_gravity = 1e9f;  // m/s^2; its square is still far from overflow
+
+// Worlds are numbered in turn, 1 to 255, for their handles alone: no result depends on it.
+uint32_t next_world_number() {
+    static std::atomic<uint32_t> built{0};
+    return built.fetch_add(1, std::memory_order_relaxed) % 255 + 1;
+}
 
 Error bad_config(std::string what) { return {ErrorCode::bad_config, "build: " + std::move(what)}; }
 
@@ -45,13 +53,13 @@ Status check_config(const WorldConfig& c) {
 
 }  // namespace
 
-WorldData::WorldData(const WorldConfig& settings)
+WorldData::WorldData(const WorldConfig& settings, uint32_t number)
     : config(settings),
       memory{settings.allocator.user, settings.allocator.allocate, settings.allocator.free},
       tasks(settings.workers, task_hook(settings)),
-      bodies(&memory),
-      colliders(&memory),
-      joints(&memory),
+      bodies(&memory, number),
+      colliders(&memory, number),
+      joints(&memory, number),
       broad_phase(settings.broad_phase, &memory),
       moving_boxes(&memory),
       fixed_boxes(&memory),
@@ -76,7 +84,7 @@ Result<World> WorldBuilder::build() const {
     if (Status s = check_config(config_); !s) return s.error();
     WorldConfig config = config_;
     if (config.width == 0) config.width = native_width();
-    return World(std::make_unique<WorldData>(config));
+    return World(std::make_unique<WorldData>(config, next_world_number()));
 }
 
 World::World(std::unique_ptr<WorldData> data) : data_(std::move(data)) {}
@@ -86,14 +94,14 @@ World::~World() = default;
 
 bool World::alive(BodyId id) const { return data_->bodies.alive(id); }
 RigidBodyRef World::get(BodyId id) {
-    if (!alive(id)) detail::fail({ErrorCode::stale_id, "get: there is no such body any more"});
+    if (!alive(id)) detail::fail(no_such(data_->bodies.slots, id.generation, "get", "body"));
     if (data_->bodies.info[id.index].type == BodyType::fixed)
         detail::fail({ErrorCode::stale_id, "get: that body is static; use get_static"});
     return RigidBodyRef(*data_, id.index);
 }
 const RigidBodyRef World::get(BodyId id) const { return const_cast<World*>(this)->get(id); }
 StaticBodyRef World::get_static(BodyId id) const {
-    if (!alive(id)) detail::fail({ErrorCode::stale_id, "get_static: there is no such body any more"});
+    if (!alive(id)) detail::fail(no_such(data_->bodies.slots, id.generation, "get_static", "body"));
     return StaticBodyRef(*data_, id.index);
 }
 

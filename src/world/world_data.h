@@ -27,7 +27,8 @@ struct OldPlace {
 };
 
 struct WorldData {
-    explicit WorldData(const WorldConfig& settings);
+    // `number`: of the world among all built, 1 to 255, which its handles carry.
+    WorldData(const WorldConfig& settings, uint32_t number);
 
     WorldConfig config;
     Memory memory;
@@ -87,6 +88,8 @@ void remove_joints_of(WorldData& world, uint32_t body);
 
 // Wakes a body and everything that rests on it.
 void wake_body(WorldData& world, uint32_t slot);
+// Wakes what touched a body in the last step: it goes away.
+void wake_touching(WorldData& world, uint32_t slot);
 
 // What gravity, forces and torques do to a body, cut to what takes it to twice the greatest speed within `dt`.
 Vec3 acceleration(const WorldData& world, uint32_t slot, float dt);
