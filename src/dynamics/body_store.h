@@ -42,7 +42,7 @@ struct BodyChange {
 struct BodyInfo {
     BodyType type = BodyType::fixed;
     bool asleep = false, allow_sleep = true, has_forces = false;
-    bool placed = true;  // added or put somewhere by hand since the last step
+    bool placed = true;                      // added or put somewhere by hand since the last step
     bool capped = false, contained = false;  // in the last step: speed cut; state went non-finite and was put back
     float gravity_factor = 1.0f, linear_damping = 0.0f, angular_damping = 0.0f;
     float still_time = 0.0f;  // how long it has been slow, s

@@ -231,8 +231,7 @@ Result<JointId> World::add_joint(const JointDef& def) {
 }
 
 Status World::remove_joint(JointId id) {
-    if (!data_->joints.alive(id))
-        return no_such(data_->joints.slots, id.generation, "remove_joint", "joint");
+    if (!data_->joints.alive(id)) return no_such(data_->joints.slots, id.generation, "remove_joint", "joint");
     remove_joint_at(*data_, id.index);
     return {};
 }

@@ -123,7 +123,10 @@ const Waking wakings[] = {
          run(s.world, 2);
          s.world.get(lift).set_pose({-0.95f, 0.5f, 0.0f}, {}).value();
      }},
-    {"static_body_added", [](SleepingStack& s) { s.world.add_static_body({.position = {-0.95f, 0.5f, 0.0f}}).value(); }},
+    {"static_body_added",
+     [](SleepingStack& s) {
+         s.world.add_static_body({.position = {-0.95f, 0.5f, 0.0f}}).value();
+     }},
     {"floor_removed", [](SleepingStack& s) { s.world.remove_body(s.floor).value(); }},
     {"joint_added",
      [](SleepingStack& s) {
