@@ -13,8 +13,23 @@ void AllPairs::Set::assign(const BroadBox* boxes, int count) {
     for (int i = count; i < block_count * block_size; ++i) clear_lane(blocks[i / block_size], i % block_size);
 }
 
-void AllPairs::set_fixed(const BroadBox* boxes, int count, TaskPool*) { fixed_.assign(boxes, count); }
-void AllPairs::set_moving(const BroadBox* boxes, int count, TaskPool*) { moving_.assign(boxes, count); }
+BroadBox AllPairs::Set::box(int place) const {
+    const BoxBlock& block = blocks[place / block_size];
+    int lane = place % block_size;
+    return {{block.lower[0][lane], block.lower[1][lane], block.lower[2][lane]},
+            index[place],
+            {block.upper[0][lane], block.upper[1][lane], block.upper[2][lane]},
+            0};
+}
+
+void AllPairs::set_fixed(const BroadBox* boxes, int count, TaskPool*) {
+    fixed_.assign(boxes, count);
+    changes_.forget();
+}
+void AllPairs::set_moving(const BroadBox* boxes, int count, TaskPool*) {
+    moving_.assign(boxes, count);
+    changes_.forget();
+}
 
 // Appends the pairs of a box with those from place `first` on.
 void AllPairs::Set::pairs_from(const WideBox& box, uint32_t box_index, int first, PairList& out) const {
@@ -38,45 +53,45 @@ void AllPairs::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
     });
 }
 
-void AllPairs::query_box(const float lower[3], const float upper[3], Array<uint32_t>& out) const {
-    WideBox box = spread(lower, upper);
+void AllPairs::update(TaskPool& tasks, const BroadBox* boxes, int count, const uint32_t* changed, int changed_count,
+                      Array<BoxPair>& begun, Array<BoxPair>& ended) {
+    constexpr int share = 4;  // all pairs of a box cost twice what its part in the search for all pairs does, two times
+    changes_.update(*this, tasks, {boxes, count, changed, changed_count}, share, begun, ended);
+}
+
+template <class Query>
+void AllPairs::offer_all(Query& query) const {
     for (const Set* set : {&moving_, &fixed_}) {
         for (int b = 0; b < set->blocks.count(); ++b) {
-            uint32_t hits = overlaps(set->blocks[b], box) & set->lanes(b);
-            while (hits) out.push_back(set->index[b * block_size + take_bit(hits)]);
+            offer_block(query, set->blocks[b], set->lanes(b), set->index.data() + b * block_size);
         }
     }
 }
 
-uint32_t AllPairs::ray(const float origin[3], const float translation[3], float max_t, float& t) const {
-    RayCast cast(origin, translation, max_t);
-    for (const Set* set : {&moving_, &fixed_}) {
-        for (int b = 0; b < set->blocks.count(); ++b) {
-            cast_into(cast, set->blocks[b], set->lanes(b), set->index.data() + b * block_size);
-        }
-    }
-    if (cast.best_index != no_box) t = cast.best_t;
-    return cast.best_index;
-}
+void AllPairs::cast(BoxCast& cast) const { offer_all(cast); }
+void AllPairs::nearest(NearestBox& nearest) const { offer_all(nearest); }
 
 void AllPairs::boxes(Array<BroadPhaseBox>& out) const {
     for (const Set* set : {&moving_, &fixed_}) {
         for (int i = 0; i < set->index.count(); ++i) {
-            const BoxBlock& block = set->blocks[i / block_size];
-            int lane = i % block_size;
-            out.push_back({{block.lower[0][lane], block.lower[1][lane], block.lower[2][lane]},
-                           {block.upper[0][lane], block.upper[1][lane], block.upper[2][lane]},
-                           0,
-                           true,
-                           set->index[i]});
+            const BroadBox b = set->box(i);
+            out.push_back(
+                {{b.lower[0], b.lower[1], b.lower[2]}, {b.upper[0], b.upper[1], b.upper[2]}, 0, true, b.index});
         }
     }
 }
 
 size_t AllPairs::bytes() const {
-    size_t sum = chunks_.bytes();
+    size_t sum = chunks_.bytes() + changes_.bytes();
     for (const Set* set : {&moving_, &fixed_}) sum += set->blocks.bytes() + set->index.bytes();
     return sum;
+}
+
+const char* AllPairs::check() const {
+    for (const Set* set : {&moving_, &fixed_}) {
+        if (set->blocks.count() != (set->index.count() + block_size - 1) / block_size) return "blocks do not fit boxes";
+    }
+    return "";
 }
 
 }  // namespace lendulet

@@ -1,5 +1,5 @@
 // The cuts of OMT: exact selection, parts of nearly equal count, and less overlap than chance.
-#include "broad_phase/omt.h"
+#include "broad_phase/rtree/omt.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,8 @@
 #include "base/tasks.h"
 #include "broad_phase/block.h"
 #include "broad_phase/box.h"
-#include "broad_phase/omt.h"
+#include "broad_phase/query.h"
+#include "broad_phase/rtree/omt.h"
 
 namespace lendulet {
 
@@ -44,11 +45,12 @@ public:
     // visit(index) for every box in the tree that overlaps; not for the unbounded ones. The box given may be infinite.
     template <class Visit>
     void visit_overlapping(const float lower[3], const float upper[3], Visit&& visit) const;
-    // Appends the index of every box that overlaps, the unbounded ones included.
-    void query_box(const float lower[3], const float upper[3], Array<uint32_t>& out) const;
-    void cast(RayCast& ray) const;
+    // Offers the query (BoxCast or NearestBox) every box that could better its best hit, the unbounded ones included.
+    template <class Query>
+    void offer_to(Query& query) const;
     void boxes(Array<BroadPhaseBox>& out) const;
     size_t bytes() const;
+    const char* check() const;  // as BroadPhase::check
 
 private:
     static constexpr int max_levels = 12;  // 8^11 > 2^31 boxes

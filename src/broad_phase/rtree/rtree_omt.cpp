@@ -1,4 +1,4 @@
-#include "broad_phase/rtree_omt.h"
+#include "broad_phase/rtree/rtree_omt.h"
 
 namespace lendulet {
 
@@ -73,13 +73,20 @@ private:
 
 }  // namespace
 
-RtreeOmt::RtreeOmt(const Memory* memory) : fixed_(memory), moving_(memory), chunks_(memory) {}
+RtreeOmt::RtreeOmt(const Memory* memory)
+    : fixed_(memory), moving_(memory), moving_boxes_(memory), chunks_(memory), changes_(memory) {}
 
-void RtreeOmt::set_fixed(const BroadBox* boxes, int count, TaskPool* tasks) { fixed_.build(boxes, count, tasks); }
+void RtreeOmt::set_fixed(const BroadBox* boxes, int count, TaskPool* tasks) {
+    fixed_.build(boxes, count, tasks);
+    changes_.forget();
+}
 
 // The tree knows boxes by their place in the array. If the array holds other boxes than the last time, refitting is
 // still right; the growth then tells that it is slow.
 void RtreeOmt::set_moving(const BroadBox* boxes, int count, TaskPool* tasks) {
+    moving_boxes_.clear();
+    moving_boxes_.append(boxes, static_cast<size_t>(count));
+    changes_.forget();
     bool keep = count == moving_.count() && refits_ < most_refits;
     if (keep && moving_.refit(boxes, tasks) && moving_.growth() < most_growth) {
         ++refits_;
@@ -125,17 +132,20 @@ void RtreeOmt::pairs_of_unbounded(Array<BoxPair>& out) const {
     }
 }
 
-void RtreeOmt::query_box(const float lower[3], const float upper[3], Array<uint32_t>& out) const {
-    moving_.query_box(lower, upper, out);
-    fixed_.query_box(lower, upper, out);
+void RtreeOmt::update(TaskPool& tasks, const BroadBox* boxes, int count, const uint32_t* changed, int changed_count,
+                      Array<BoxPair>& begun, Array<BoxPair>& ended) {
+    constexpr int share = 8;
+    changes_.update(*this, tasks, {boxes, count, changed, changed_count}, share, begun, ended);
 }
 
-uint32_t RtreeOmt::ray(const float origin[3], const float translation[3], float max_t, float& t) const {
-    RayCast cast(origin, translation, max_t);
-    moving_.cast(cast);
-    fixed_.cast(cast);
-    if (cast.best_index != no_box) t = cast.best_t;
-    return cast.best_index;
+void RtreeOmt::cast(BoxCast& cast) const {
+    moving_.offer_to(cast);
+    fixed_.offer_to(cast);
+}
+
+void RtreeOmt::nearest(NearestBox& nearest) const {
+    moving_.offer_to(nearest);
+    fixed_.offer_to(nearest);
 }
 
 void RtreeOmt::boxes(Array<BroadPhaseBox>& out) const {
@@ -143,6 +153,13 @@ void RtreeOmt::boxes(Array<BroadPhaseBox>& out) const {
     fixed_.boxes(out);
 }
 
-size_t RtreeOmt::bytes() const { return moving_.bytes() + fixed_.bytes() + chunks_.bytes(); }
+size_t RtreeOmt::bytes() const {
+    return moving_.bytes() + fixed_.bytes() + moving_boxes_.bytes() + chunks_.bytes() + changes_.bytes();
+}
+
+const char* RtreeOmt::check() const {
+    const char* wrong = moving_.check();
+    return *wrong ? wrong : fixed_.check();
+}
 
 }  // namespace lendulet

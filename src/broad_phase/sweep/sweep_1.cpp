@@ -1,42 +1,12 @@
-#include "broad_phase/sweep.h"
+#include "broad_phase/sweep/sweep_1.h"
 
 #include <algorithm>
-#include <cstring>
-#include <utility>
+
+#include "broad_phase/sort.h"
 
 namespace lendulet {
 
 namespace {
-
-// Unsigned integers in the order of floats; -0 counts as +0.
-uint32_t ordered_bits(float x) {
-    x += 0.0f;
-    uint32_t bits;
-    std::memcpy(&bits, &x, sizeof bits);
-    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
-}
-
-// Sorts by the upper 32 bits. The lower ones hold the place in the input, so that keys are distinct; the radix sort
-// leaves them alone because it is stable. The result may stand in either array: it is left in `keys`.
-void sort_keys(Array<uint64_t>& keys, Array<uint64_t>& swap) {
-    constexpr int digit = 11, passes = 3, radix = 1 << digit;
-    constexpr size_t radix_pays_from = 400;  // measured: below, clearing and summing the histograms costs more
-    if (keys.size() < radix_pays_from) {
-        std::sort(keys.begin(), keys.end());  // a total order: no two keys are equal
-        return;
-    }
-    swap.resize_unset(keys.size());
-    uint32_t histogram[passes][radix] = {};
-    for (uint64_t key : keys) {
-        for (int p = 0; p < passes; ++p) ++histogram[p][key >> (32 + p * digit) & (radix - 1)];
-    }
-    for (int p = 0; p < passes; ++p) {
-        uint32_t begin = 0;
-        for (uint32_t& place : histogram[p]) begin += std::exchange(place, begin);
-        for (uint64_t key : keys) swap[histogram[p][key >> (32 + p * digit) & (radix - 1)]++] = key;
-        keys.swap(swap);
-    }
-}
 
 // The axis along which the centres of the bounded boxes have the largest variance, in double, so that boxes as far out
 // as floats go do not overflow. Another axis replaces the current one only if clearly better: a change sorts the fixed
@@ -66,38 +36,38 @@ constexpr size_t padding = 4;  // a vector may be read past the last box; its la
 
 }  // namespace
 
-Sweep::Sorted::Sorted(const Memory* memory) : index(memory) {
+Sweep1::Sorted::Sorted(const Memory* memory) : index(memory) {
     for (int d = 0; d < 3; ++d) {
         lower[d].set_memory(memory);
         upper[d].set_memory(memory);
     }
 }
 
-void Sweep::Sorted::coordinates(int i, float box_lower[3], float box_upper[3]) const {
+void Sweep1::Sorted::coordinates(int i, float box_lower[3], float box_upper[3]) const {
     for (int d = 0; d < 3; ++d) {
         box_lower[(axis + d) % 3] = lower[d][i];
         box_upper[(axis + d) % 3] = upper[d][i];
     }
 }
 
-int Sweep::Sorted::first_at_or_after(float x) const {
+int Sweep1::Sorted::first_at_or_after(float x) const {
     return static_cast<int>(std::lower_bound(lower[0].data(), lower[0].data() + count(), x) - lower[0].data());
 }
-int Sweep::Sorted::first_after(float x) const {
+int Sweep1::Sorted::first_after(float x) const {
     return static_cast<int>(std::upper_bound(lower[0].data(), lower[0].data() + count(), x) - lower[0].data());
 }
 
-size_t Sweep::Sorted::bytes() const {
+size_t Sweep1::Sorted::bytes() const {
     size_t sum = index.bytes();
     for (int d = 0; d < 3; ++d) sum += lower[d].bytes() + upper[d].bytes();
     return sum;
 }
 
-void Sweep::sort_into(Sorted& set, const BroadBox* boxes, int count) {
+void Sweep1::sort_into(Sorted& set, const BroadBox* boxes, int count) {
     size_t n = static_cast<size_t>(count);
     keys_.resize_unset(n);
     for (size_t i = 0; i < n; ++i) keys_[i] = uint64_t{ordered_bits(boxes[i].lower[axis_])} << 32 | i;
-    sort_keys(keys_, keys_swap_);
+    sort_keys(keys_, keys_swap_, 32);
     set.axis = axis_;
     set.index.resize_unset(n);
     for (int d = 0; d < 3; ++d) {
@@ -115,20 +85,24 @@ void Sweep::sort_into(Sorted& set, const BroadBox* boxes, int count) {
     }
 }
 
-void Sweep::set_fixed(const BroadBox* boxes, int count, TaskPool*) {
-    fixed_boxes_ = boxes;
-    fixed_count_ = count;
+void Sweep1::set_fixed(const BroadBox* boxes, int count, TaskPool*) {
+    fixed_boxes_.clear();
+    fixed_boxes_.append(boxes, static_cast<size_t>(count));
     sort_into(fixed_, boxes, count);
+    changes_.forget();
 }
 
-void Sweep::set_moving(const BroadBox* boxes, int count, TaskPool*) {
+void Sweep1::set_moving(const BroadBox* boxes, int count, TaskPool*) {
+    moving_boxes_.clear();
+    moving_boxes_.append(boxes, static_cast<size_t>(count));
     axis_ = axis_of_largest_variance(boxes, count, axis_);
     sort_into(moving_, boxes, count);
-    if (fixed_.axis != axis_) sort_into(fixed_, fixed_boxes_, fixed_count_);
+    if (fixed_.axis != axis_) sort_into(fixed_, fixed_boxes_.data(), fixed_boxes_.count());
+    changes_.forget();
 }
 
 // Appends the pairs of box i of one list with the boxes of another, from place `first` on, that begin before it ends.
-void Sweep::sweep_from(const Sorted& from, int i, const Sorted& over, int first, PairList& out) {
+void Sweep1::sweep_from(const Sorted& from, int i, const Sorted& over, int first, PairList& out) {
     const float* starts = over.lower[0].data();
     float end = from.upper[0][i];
     int count = over.count();
@@ -151,7 +125,7 @@ void Sweep::sweep_from(const Sorted& from, int i, const Sorted& over, int first,
     }
 }
 
-void Sweep::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
+void Sweep1::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
     constexpr int grain = 128;
     // A moving and a fixed box are found from the one that begins first; from the moving one if both begin together.
     chunks_.search(tasks, moving_.count(), grain, out, [&](int begin, int end, PairList& list) {
@@ -167,31 +141,27 @@ void Sweep::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
     });
 }
 
-void Sweep::query_box(const float lower[3], const float upper[3], Array<uint32_t>& out) const {
-    for (const Sorted* set : {&moving_, &fixed_}) {
-        int end = set->first_after(upper[set->axis]);
-        for (int i = 0; i < end; ++i) {
-            BroadBox box;
-            set->coordinates(i, box.lower, box.upper);
-            if (overlap(box, lower, upper)) out.push_back(set->index[i]);
-        }
-    }
+void Sweep1::update(TaskPool& tasks, const BroadBox* boxes, int count, const uint32_t* changed, int changed_count,
+                    Array<BoxPair>& begun, Array<BoxPair>& ended) {
+    constexpr int share = 16;
+    changes_.update(*this, tasks, {boxes, count, changed, changed_count}, share, begun, ended);
 }
 
-uint32_t Sweep::ray(const float origin[3], const float translation[3], float max_t, float& t) const {
-    RayCast cast(origin, translation, max_t);
+template <class Query>
+void Sweep1::offer_all(Query& query) const {
     for (const Sorted* set : {&moving_, &fixed_}) {
         for (int i = 0; i < set->count(); ++i) {
             float lower[3], upper[3];
             set->coordinates(i, lower, upper);
-            cast.offer(ray_entry<float>(cast, lower, upper), set->index[i]);
+            query.offer(measure(query, lower, upper), set->index[i]);
         }
     }
-    if (cast.best_index != no_box) t = cast.best_t;
-    return cast.best_index;
 }
 
-void Sweep::boxes(Array<BroadPhaseBox>& out) const {
+void Sweep1::cast(BoxCast& cast) const { offer_all(cast); }
+void Sweep1::nearest(NearestBox& nearest) const { offer_all(nearest); }
+
+void Sweep1::boxes(Array<BroadPhaseBox>& out) const {
     for (const Sorted* set : {&moving_, &fixed_}) {
         for (int i = 0; i < set->count(); ++i) {
             BroadPhaseBox box{{}, {}, 0, true, set->index[i]};
@@ -201,8 +171,18 @@ void Sweep::boxes(Array<BroadPhaseBox>& out) const {
     }
 }
 
-size_t Sweep::bytes() const {
-    return fixed_.bytes() + moving_.bytes() + keys_.bytes() + keys_swap_.bytes() + chunks_.bytes();
+size_t Sweep1::bytes() const {
+    return fixed_.bytes() + moving_.bytes() + fixed_boxes_.bytes() + moving_boxes_.bytes() + keys_.bytes() +
+           keys_swap_.bytes() + chunks_.bytes() + changes_.bytes();
+}
+
+const char* Sweep1::check() const {
+    for (const Sorted* set : {&moving_, &fixed_}) {
+        for (int i = 1; i < set->count(); ++i) {
+            if (set->lower[0][i] < set->lower[0][i - 1]) return "boxes are not sorted along the axis";
+        }
+    }
+    return "";
 }
 
 }  // namespace lendulet

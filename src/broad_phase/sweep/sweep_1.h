@@ -7,22 +7,39 @@
 #include "base/tasks.h"
 #include "broad_phase/block.h"
 #include "broad_phase/box.h"
+#include "broad_phase/pair_changes.h"
 #include "broad_phase/pair_chunks.h"
+#include "broad_phase/query.h"
 
 namespace lendulet {
 
-class Sweep {
+class Sweep1 {
 public:
-    explicit Sweep(const Memory* memory)
-        : fixed_(memory), moving_(memory), keys_(memory), keys_swap_(memory), chunks_(memory) {}
+    explicit Sweep1(const Memory* memory)
+        : fixed_(memory),
+          moving_(memory),
+          fixed_boxes_(memory),
+          moving_boxes_(memory),
+          keys_(memory),
+          keys_swap_(memory),
+          chunks_(memory),
+          changes_(memory) {}
 
     void set_fixed(const BroadBox* boxes, int count, TaskPool* tasks = nullptr);
     void set_moving(const BroadBox* boxes, int count, TaskPool* tasks = nullptr);
     void find_pairs(TaskPool& tasks, Array<BoxPair>& out);
-    void query_box(const float lower[3], const float upper[3], Array<uint32_t>& out) const;
-    uint32_t ray(const float origin[3], const float translation[3], float max_t, float& t) const;
+    void update(TaskPool& tasks, const BroadBox* boxes, int count, const uint32_t* changed, int changed_count,
+                Array<BoxPair>& begun, Array<BoxPair>& ended);
+    template <class Visit>
+    void visit_overlapping(const float lower[3], const float upper[3], Visit&& visit) const;
+    void cast(BoxCast& cast) const;
+    void nearest(NearestBox& nearest) const;
     void boxes(Array<BroadPhaseBox>& out) const;
     size_t bytes() const;
+    const char* check() const;
+
+    int moving_count() const { return moving_boxes_.count(); }
+    BroadBox moving_box(int place) const { return moving_boxes_[place]; }
 
 private:
     // Boxes in the order in which they begin on the axis; coordinates in arrays of their own, the sweep's axis first.
@@ -38,13 +55,28 @@ private:
         size_t bytes() const;
     };
     void sort_into(Sorted& set, const BroadBox* boxes, int count);
+    template <class Query>
+    void offer_all(Query& query) const;
     static void sweep_from(const Sorted& from, int i, const Sorted& over, int first, PairList& out);
 
     Sorted fixed_, moving_;
-    const BroadBox* fixed_boxes_ = nullptr;
-    int fixed_count_ = 0, axis_ = 0;
+    Array<BroadBox> fixed_boxes_, moving_boxes_;
+    int axis_ = 0;
     Array<uint64_t> keys_, keys_swap_;
     PairChunks chunks_;
+    PairChanges changes_;
 };
+
+template <class Visit>
+void Sweep1::visit_overlapping(const float lower[3], const float upper[3], Visit&& visit) const {
+    for (const Sorted* set : {&moving_, &fixed_}) {
+        int end = set->first_after(upper[set->axis]);
+        for (int i = 0; i < end; ++i) {
+            BroadBox box;
+            set->coordinates(i, box.lower, box.upper);
+            if (overlap(box, lower, upper)) visit(set->index[i]);
+        }
+    }
+}
 
 }  // namespace lendulet

@@ -1,4 +1,4 @@
-#include "broad_phase/box_tree.h"
+#include "broad_phase/rtree/box_tree.h"
 
 #include "math/wide/gather.h"
 
@@ -275,38 +275,53 @@ uint32_t BoxTree::boxes_in_leaf(int leaf) const {
     return lanes;
 }
 
-void BoxTree::query_box(const float lower[3], const float upper[3], Array<uint32_t>& out) const {
-    for (const BroadBox& box : unbounded_) {
-        if (overlap(box, lower, upper)) out.push_back(box.index);
-    }
-    visit_overlapping(lower, upper, [&](uint32_t index) { out.push_back(index); });
-}
-
-void BoxTree::cast(RayCast& ray) const {
-    for (const BroadBox& box : unbounded_) ray.offer(ray_entry<float>(ray, box.lower, box.upper), box.index);
+template <class Query>
+void BoxTree::offer_to(Query& query) const {
+    for (const BroadBox& box : unbounded_) query.offer(measure(query, box.lower, box.upper), box.index);
     if (group_count() == 0) return;
     struct Entry {
         Place place;
-        float t;
+        float at;
     };
     Entry stack[stack_size];
     stack[0] = {{0, 0}, 0};
     for (int top = 1; top > 0;) {
-        auto [place, t] = stack[--top];
-        if (t > ray.best_t) continue;  // at equal t there may be a smaller index
+        auto [place, at] = stack[--top];
+        if (at > limit(query)) continue;  // at an equal one there may be a smaller index
         if (place.level == levels_ - 1) {
-            cast_into(ray, node(place), boxes_in_leaf(place.node), leaf_indices(place.node));
+            offer_block(query, node(place), boxes_in_leaf(place.node), leaf_indices(place.node));
             continue;
         }
-        float entry[block_size];
-        ray_entries(ray, node(place), entry);
+        float measures[block_size];
+        measure_block(query, node(place), measures);
         for (int k = 0, bottom = top; k < fan_out_[place.level]; ++k) {
-            if (entry[k] > ray.best_t) continue;
-            int at = top++;  // sorted so that the nearest comes off first
-            for (; at > bottom && stack[at - 1].t < entry[k]; --at) stack[at] = stack[at - 1];
-            stack[at] = {child(place, k), entry[k]};
+            if (measures[k] > limit(query)) continue;
+            int i = top++;  // sorted so that the best comes off first
+            for (; i > bottom && stack[i - 1].at < measures[k]; --i) stack[i] = stack[i - 1];
+            stack[i] = {child(place, k), measures[k]};
         }
     }
+}
+template void BoxTree::offer_to(BoxCast&) const;
+template void BoxTree::offer_to(NearestBox&) const;
+
+const char* BoxTree::check() const {
+    for (int level = 0; level + 1 < levels_ && group_count() > 0; ++level) {
+        for (int i = 0; i < nodes_at_[level]; ++i) {
+            for (int k = 0; k < fan_out_[level]; ++k) {
+                float lower[3], upper[3];
+                block_bounds(node(child({level, i}, k)), lower, upper);
+                for (int d = 0; d < 3; ++d) {
+                    if (node({level, i}).lower[d][k] != lower[d] || node({level, i}).upper[d][k] != upper[d]) {
+                        return "a node's bounds are not those of its children";
+                    }
+                }
+            }
+        }
+    }
+    int held = 0;
+    for (uint32_t slot : slot_) held += slot != no_box;
+    return group_count() == 0 || held == count_bounded() ? "" : "the leaves do not hold all boxes";
 }
 
 void BoxTree::boxes(Array<BroadPhaseBox>& out) const {
