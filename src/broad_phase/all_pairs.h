@@ -4,11 +4,10 @@
 
 #include "base/memory.h"
 #include "base/tasks.h"
-#include "broad_phase/block.h"
 #include "broad_phase/box.h"
+#include "broad_phase/box_set.h"
 #include "broad_phase/pair_changes.h"
 #include "broad_phase/pair_chunks.h"
-#include "broad_phase/query.h"
 
 namespace lendulet {
 
@@ -29,28 +28,11 @@ public:
     size_t bytes() const;
     const char* check() const;
 
-    int moving_count() const { return moving_.index.count(); }
+    int moving_count() const { return moving_.count(); }
     BroadBox moving_box(int place) const { return moving_.box(place); }
 
 private:
-    // The boxes of one set in the caller's order, eight a block.
-    struct Set {
-        Array<BoxBlock> blocks;
-        Array<uint32_t> index;
-        explicit Set(const Memory* memory) : blocks(memory), index(memory) {}
-        void assign(const BroadBox* boxes, int count);
-        BroadBox box(int place) const;
-        void pairs_from(const WideBox& box, uint32_t box_index, int first, PairList& out) const;
-        // The lanes of block `b` that hold boxes.
-        uint32_t lanes(int b) const {
-            int left = index.count() - b * block_size;
-            return left >= block_size ? 0xffu : (1u << left) - 1;
-        }
-    };
-    template <class Query>
-    void offer_all(Query& query) const;
-
-    Set fixed_, moving_;
+    BoxSet fixed_, moving_;
     PairChunks chunks_;
     PairChanges changes_;
 };
@@ -58,12 +40,8 @@ private:
 template <class Visit>
 void AllPairs::visit_overlapping(const float lower[3], const float upper[3], Visit&& visit) const {
     const WideBox box = spread(lower, upper);
-    for (const Set* set : {&moving_, &fixed_}) {
-        for (int b = 0; b < set->blocks.count(); ++b) {
-            uint32_t hits = overlaps(set->blocks[b], box) & set->lanes(b);
-            while (hits) visit(set->index[b * block_size + take_bit(hits)]);
-        }
-    }
+    moving_.visit_overlapping(box, visit);
+    fixed_.visit_overlapping(box, visit);
 }
 
 }  // namespace lendulet

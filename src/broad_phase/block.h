@@ -62,6 +62,13 @@ inline bool overlap(const BroadBox& a, const float lower[3], const float upper[3
            a.lower[2] <= upper[2] && a.upper[2] >= lower[2];
 }
 
+inline BroadBox box_in(const BoxBlock& block, int lane, uint32_t index) {
+    return {{block.lower[0][lane], block.lower[1][lane], block.lower[2][lane]},
+            index,
+            {block.upper[0][lane], block.upper[1][lane], block.upper[2][lane]},
+            0};
+}
+
 inline void set_lane(BoxBlock& block, int lane, const float lower[3], const float upper[3]) {
     for (int d = 0; d < 3; ++d) {
         block.lower[d][lane] = lower[d];

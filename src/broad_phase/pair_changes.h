@@ -5,7 +5,9 @@
 // before and after; then the list after is kept, for it is the list before of the next time.
 //
 // A structure for this has moving_count(), moving_box(place) (as it was last set), visit_overlapping(), set_moving(),
-// find_pairs() and optionally change_moving(boxes, count, changed, changed_count, tasks), which is told what changed.
+// find_pairs(), and optionally change_moving(changes, tasks), which is told what changed, and
+// find_pairs_of(tasks, boxes, count, out), the pairs of some boxes with both sets; it may give pairs twice and those
+// of a box with itself.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +40,7 @@ struct BoxChanges {
 class PairChanges {
 public:
     explicit PairChanges(const Memory* memory)
-        : before_(memory), after_(memory), swap_(memory), pairs_(memory), chunks_(memory) {}
+        : before_(memory), after_(memory), swap_(memory), pairs_(memory), touched_(memory), chunks_(memory) {}
 
     // Brings the structure to its new state and appends the pairs that begin and that end, each sorted. Looks up single
     // boxes while fewer than one in `share` of them changed.
@@ -50,19 +52,21 @@ public:
         int gone = old_count - common, fresh = changes.count - common;
         bool few = (static_cast<int64_t>(listed) + gone + fresh) * share < changes.count;
         if (few) {
-            before_.clear();
-            auto old_box = [&](int i) {
-                return structure.moving_box(static_cast<int>(changes.place(i, listed, common)));
-            };
-            pairs_of(structure, tasks, listed + gone, old_box, before_);
+            touched_.clear();
+            for (int i = 0; i < listed + gone; ++i) {
+                touched_.push_back(structure.moving_box(static_cast<int>(changes.place(i, listed, common))));
+            }
+            pairs_of_touched(structure, tasks, before_);
         } else if (!known_) {
             all_pairs(structure, tasks, before_);
         }
         if constexpr (requires { structure.change_moving(changes, tasks); }) structure.change_moving(changes, tasks);
         else structure.set_moving(changes.boxes, changes.count, &tasks);
         if (few) {
-            auto new_box = [&](int i) { return changes.boxes[changes.place(i, listed, common)]; };
-            pairs_of(structure, tasks, listed + fresh, new_box, after_);
+            touched_.clear();
+            for (int i = 0; i < listed + fresh; ++i)
+                touched_.push_back(changes.boxes[changes.place(i, listed, common)]);
+            pairs_of_touched(structure, tasks, after_);
         } else {
             all_pairs(structure, tasks, after_);
         }
@@ -75,20 +79,25 @@ public:
     // The structure has been set otherwise: what was kept of its pairs is of no use.
     void forget() { known_ = false; }
 
-    size_t bytes() const { return before_.bytes() + after_.bytes() + swap_.bytes() + pairs_.bytes() + chunks_.bytes(); }
+    size_t bytes() const {
+        return before_.bytes() + after_.bytes() + swap_.bytes() + pairs_.bytes() + touched_.bytes() + chunks_.bytes();
+    }
 
 private:
-    // The pairs of `count` boxes, sorted, each once.
-    template <class Structure, class BoxAt>
-    void pairs_of(const Structure& structure, TaskPool& tasks, int count, BoxAt&& box_at, Array<uint64_t>& keys) {
+    // The pairs of the boxes in touched_, sorted, each once.
+    template <class Structure>
+    void pairs_of_touched(Structure& structure, TaskPool& tasks, Array<uint64_t>& keys) {
         constexpr int grain = 64;
         pairs_.clear();
-        chunks_.search(tasks, count, grain, pairs_, [&](int begin, int end, PairList& list) {
+        if constexpr (requires { structure.find_pairs_of(tasks, touched_.data(), 0, pairs_); }) {
+            structure.find_pairs_of(tasks, touched_.data(), touched_.count(), pairs_);
+            return sorted_keys(keys);
+        }
+        chunks_.search(tasks, touched_.count(), grain, pairs_, [&](int begin, int end, PairList& list) {
             for (int i = begin; i < end; ++i) {
-                const BroadBox box = box_at(i);
-                structure.visit_overlapping(box.lower, box.upper, [&](uint32_t other) {
-                    if (other != box.index) PairWriter(list, 1).write(box.index, other);
-                });
+                const BroadBox& box = touched_[i];
+                structure.visit_overlapping(box.lower, box.upper,
+                                            [&](uint32_t other) { PairWriter(list, 1).write(box.index, other); });
             }
         });
         sorted_keys(keys);
@@ -99,11 +108,12 @@ private:
         structure.find_pairs(tasks, pairs_);
         sorted_keys(keys);
     }
-    void sorted_keys(Array<uint64_t>& keys);  // of pairs_
+    void sorted_keys(Array<uint64_t>& keys);  // of pairs_, without those of a box and itself
     static void append_missing(const Array<uint64_t>& from, const Array<uint64_t>& in, Array<BoxPair>& out);
 
     Array<uint64_t> before_, after_, swap_;  // a << 32 | b
     Array<BoxPair> pairs_;
+    Array<BroadBox> touched_;
     PairChunks chunks_;
     bool known_ = false;  // `before_` holds the pairs of the structure's present state
 };

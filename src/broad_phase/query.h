@@ -91,6 +91,12 @@ inline float measure(const BoxCast& cast, const float lower[3], const float uppe
 inline float measure(const NearestBox& nearest, const float lower[3], const float upper[3]) {
     return squared_distance<float>(nearest, lower, upper);
 }
+inline Float4 measure_wide(const BoxCast& cast, const Float4 lower[3], const Float4 upper[3]) {
+    return cast_entry<Float4>(cast, lower, upper);
+}
+inline Float4 measure_wide(const NearestBox& nearest, const Float4 lower[3], const Float4 upper[3]) {
+    return squared_distance<Float4>(nearest, lower, upper);
+}
 inline float limit(const BoxCast& cast) { return cast.best_t; }
 inline float limit(const NearestBox& nearest) { return nearest.best_squared; }
 
@@ -104,11 +110,7 @@ LENDULET_FORCE_INLINE void measure_block(const Query& query, const BoxBlock& blo
             lower[d] = load_wide<Float4>(block.lower[d] + half);
             upper[d] = load_wide<Float4>(block.upper[d] + half);
         }
-        if constexpr (std::is_same_v<Query, BoxCast>) {
-            store_wide(out + half, cast_entry<Float4>(query, lower, upper));
-        } else {
-            store_wide(out + half, squared_distance<Float4>(query, lower, upper));
-        }
+        store_wide(out + half, measure_wide(query, lower, upper));
     }
 }
 

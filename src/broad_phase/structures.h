@@ -12,11 +12,12 @@
 #include <variant>
 
 #include "broad_phase/all_pairs.h"
-#include "broad_phase/rtree/rtree_omt.h"
+#include "broad_phase/rtree/two_trees.h"
 #include "broad_phase/sweep/sweep_1.h"
+#include "broad_phase/sweep/sweep_3.h"
 
 namespace lendulet {
 
-using BroadPhaseStructure = std::variant<AllPairs, Sweep1, RtreeOmt>;
+using BroadPhaseStructure = std::variant<AllPairs, Sweep1, Sweep3, RtreeQuadratic, RtreeStar, RtreeStr, RtreeOmt>;
 
 }  // namespace lendulet
