@@ -62,6 +62,16 @@ inline bool overlap(const BroadBox& a, const float lower[3], const float upper[3
            a.lower[2] <= upper[2] && a.upper[2] >= lower[2];
 }
 
+// No side is infinite.
+inline bool bounded(const BroadBox& box) {
+    bool yes = true;
+    for (int d = 0; d < 3; ++d) {
+        yes &= box.lower[d] > -infinity && box.lower[d] < infinity && box.upper[d] > -infinity &&
+               box.upper[d] < infinity;
+    }
+    return yes;
+}
+
 inline BroadBox box_in(const BoxBlock& block, int lane, uint32_t index) {
     return {{block.lower[0][lane], block.lower[1][lane], block.lower[2][lane]},
             index,

@@ -33,6 +33,7 @@ protected:
         int n = static_cast<int>(boxes_.size());
         int kind = random_.below(10);
         if (n < 200 || (kind < 2 && n < 500)) {
+            changed_.push_back(static_cast<uint32_t>(n));  // it may be the place of one removed since the last update
             boxes_.push_back(random_box(next_index_++));
             return;
         }

@@ -53,7 +53,7 @@ Hit expected_nearest(const Boxes& boxes, const float point[3], float max_distanc
             float gap = std::fmax(std::fmax(box.lower[d] - point[d], point[d] - box.upper[d]), 0.0f);
             squared += gap * gap;
         }
-        if (squared <= max_distance * max_distance) take_better(best, box.index, squared);
+        if (max_distance >= 0 && squared <= max_distance * max_distance) take_better(best, box.index, squared);
     }
     best.t = std::sqrt(best.t);
     return best;

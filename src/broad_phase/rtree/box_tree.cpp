@@ -34,12 +34,6 @@ struct Bounds {
 
 constexpr BroadBox empty_box{{infinity, infinity, infinity}, no_box, {-infinity, -infinity, -infinity}, 0};
 
-bool bounded(const BroadBox& box) {
-    bool yes = true;
-    for (int d = 0; d < 3; ++d) yes &= absolute(box.lower[d]) <= FLT_MAX && absolute(box.upper[d]) <= FLT_MAX;
-    return yes;
-}
-
 // Reads the boxes of a leaf from the caller's array, transposes them into the leaf and returns their bounds.
 Bounds fill_leaf(BoxBlock& leaf, uint32_t index[block_size], const BroadBox* boxes, const uint32_t slot[block_size]) {
     Bounds bounds{splat<Float4>(infinity), splat<Float4>(-infinity)};

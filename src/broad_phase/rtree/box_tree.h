@@ -4,9 +4,8 @@
 // pointers: child k of node i of level l is node i * fan_out[l] + k of the next level. The last level are the leaves,
 // of up to eight boxes; the nodes of the level above ("groups", up to 64 boxes) are what pair searches are cut into.
 // That is why this is not an RTree with a bulk loader of its own: a shape known beforehand is filled and refitted by
-// parallel loops over whole levels, without links to follow or to keep, at less than half the time of linked nodes.
-// Its price is that single boxes can not come and go; then it is built anew, which costs about what three insertions
-// per hundred boxes would.
+// parallel loops over whole levels, without links to follow or to keep. Its price is that single boxes cannot come and
+// go: then it is built anew.
 //
 // Boxes with an infinite side (planes) are kept in a list beside the tree, so that everything in the tree is finite.
 #pragma once

@@ -10,12 +10,6 @@ constexpr int few_boxes = 32;  // packed as they come
 constexpr uint32_t unbounded_bit = 1u << 31;
 constexpr int reinserted_count = 3;  // of nine entries: 30 %, as Beckmann et al. found best
 
-bool bounded(const BroadBox& box) {
-    bool yes = true;
-    for (int d = 0; d < 3; ++d) yes &= absolute(box.lower[d]) <= FLT_MAX && absolute(box.upper[d]) <= FLT_MAX;
-    return yes;
-}
-
 RtreeEntry entry_for(const BroadBox& box, uint32_t place) {
     return {{box.lower[0], box.lower[1], box.lower[2]}, {box.upper[0], box.upper[1], box.upper[2]}, place, box.index};
 }

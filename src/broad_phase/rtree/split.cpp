@@ -124,7 +124,7 @@ uint32_t split_quadratic(const RtreeEntry entries[split_count]) {
 
 namespace {
 
-struct Bounds {
+struct GroupBounds {
     float lower[3] = {infinity, infinity, infinity}, upper[3] = {-infinity, -infinity, -infinity};
     void include(const RtreeEntry& e) {
         for (int d = 0; d < 3; ++d) {
@@ -136,7 +136,7 @@ struct Bounds {
     float volume() const { return (upper[0] - lower[0]) * (upper[1] - lower[1]) * (upper[2] - lower[2]); }
 };
 
-float overlap_volume(const Bounds& a, const Bounds& b) {
+float overlap_volume(const GroupBounds& a, const GroupBounds& b) {
     float product = 1;
     for (int d = 0; d < 3; ++d) {
         float edge = minimum(a.upper[d], b.upper[d]) - maximum(a.lower[d], b.lower[d]);
@@ -149,7 +149,7 @@ float overlap_volume(const Bounds& a, const Bounds& b) {
 // The entries in the order of one side of one axis, ties in their own order; bounds of all heads and tails.
 struct SortedEntries {
     int order[split_count];
-    Bounds head[split_count + 1], tail[split_count + 1];  // of the first k, of those from k on
+    GroupBounds head[split_count + 1], tail[split_count + 1];  // of the first k, of those from k on
 
     SortedEntries(const RtreeEntry entries[split_count], int axis, bool by_upper) {
         float key[split_count];
