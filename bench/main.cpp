@@ -19,7 +19,8 @@ constexpr const char* help =
     "  --threads N,N,..  thread counts of this engine (default 1); Bullet runs beside 1\n"
     "  --solver-steps N  substeps of this engine\n"
     "  --width N         SIMD width of this engine: 1, 4, 8 or 16\n"
-    "  --broad-phase X   all-pairs, sweep-1 or rtree-omt\n"
+    "  --broad-phase X   all-pairs, sweep-1, sweep-3, rtree-quadratic, rtree-star,\n"
+    "                    rtree-str or rtree-omt\n"
     "  --stages          also a table of this engine's stages\n"
     "  --no-bullet       this engine alone\n"
     "  --csv FILE        all results as CSV\n";

@@ -1,26 +1,26 @@
 #include "broad_phase/broad_phase.h"
 
+#include "broad_phase/query.h"
+
 namespace lendulet {
 
 namespace {
 
-using Structure = std::variant<AllPairs, Sweep, RtreeOmt>;
-
-Structure make_structure(BroadPhaseType type, const Memory* memory) {
-    switch (type) {
-        case BroadPhaseType::all_pairs:
-            return Structure(std::in_place_type<AllPairs>, memory);
-        case BroadPhaseType::sweep_1:
-            return Structure(std::in_place_type<Sweep>, memory);
-        case BroadPhaseType::rtree_omt:
-            break;
+// The structure whose place in the variant is that of `type` among the enumerators.
+template <size_t place = 0>
+BroadPhaseStructure make_structure(BroadPhaseType type, const Memory* memory) {
+    if constexpr (place + 1 < std::variant_size_v<BroadPhaseStructure>) {
+        if (static_cast<size_t>(type) > place) return make_structure<place + 1>(type, memory);
     }
-    return Structure(std::in_place_type<RtreeOmt>, memory);
+    return BroadPhaseStructure(std::in_place_index<place>, memory);
 }
+
+constexpr int queries_per_task = 32;
 
 }  // namespace
 
-BroadPhase::BroadPhase(BroadPhaseType type, const Memory* memory) : structure_(make_structure(type, memory)) {}
+BroadPhase::BroadPhase(BroadPhaseType type, const Memory* memory)
+    : structure_(make_structure(type, memory)), query_chunks_(memory), query_hits_(memory) {}
 
 void BroadPhase::set_fixed(const BroadBox* boxes, int count, TaskPool* tasks) {
     std::visit([&](auto& s) { s.set_fixed(boxes, count, tasks); }, structure_);
@@ -34,20 +34,102 @@ void BroadPhase::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
     std::visit([&](auto& s) { s.find_pairs(tasks, out); }, structure_);
 }
 
+void BroadPhase::update(TaskPool& tasks, const BroadBox* boxes, int count, const uint32_t* changed, int changed_count,
+                        Array<BoxPair>& begun, Array<BoxPair>& ended) {
+    std::visit([&](auto& s) { s.update(tasks, boxes, count, changed, changed_count, begun, ended); }, structure_);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Queries
+
 void BroadPhase::query_box(const float lower[3], const float upper[3], Array<uint32_t>& out) const {
-    std::visit([&](const auto& s) { s.query_box(lower, upper, out); }, structure_);
+    auto append = [&](uint32_t index) { out.push_back(index); };
+    std::visit([&](const auto& s) { s.visit_overlapping(lower, upper, append); }, structure_);
 }
 
 uint32_t BroadPhase::ray(const float origin[3], const float translation[3], float max_t, float& t) const {
-    return std::visit([&](const auto& s) { return s.ray(origin, translation, max_t, t); }, structure_);
+    return cast_box(origin, origin, translation, max_t, t);
 }
+
+uint32_t BroadPhase::cast_box(const float lower[3], const float upper[3], const float translation[3], float max_t,
+                              float& t) const {
+    BoxCast cast(lower, upper, translation, max_t);
+    std::visit([&](const auto& s) { s.cast(cast); }, structure_);
+    if (cast.best_index != no_box) t = cast.best_t;
+    return cast.best_index;
+}
+
+uint32_t BroadPhase::nearest(const float point[3], float max_distance, float& distance) const {
+    NearestBox query(point, max_distance);
+    std::visit([&](const auto& s) { s.nearest(query); }, structure_);
+    if (query.best_index != no_box) distance = query.distance();
+    return query.best_index;
+}
+
+void BroadPhase::query_boxes(TaskPool& tasks, const BoxQuery* queries, int count, Array<uint32_t>& offsets,
+                             Array<uint32_t>& out) {
+    query_hits_.clear();
+    query_chunks_.search(tasks, count, queries_per_task, query_hits_, [&](int begin, int end, PairList& list) {
+        std::visit(
+            [&](const auto& s) {
+                for (int i = begin; i < end; ++i) {
+                    s.visit_overlapping(queries[i].lower, queries[i].upper, [&](uint32_t index) {
+                        PairWriter(list, 1).write_as_it_is(static_cast<uint32_t>(i), index);
+                    });
+                }
+            },
+            structure_);
+    });
+    offsets.assign(static_cast<size_t>(count) + 1, 0);
+    size_t hit = 0;
+    for (int i = 0; i < count; ++i) {
+        offsets[i] = static_cast<uint32_t>(out.size());
+        for (; hit < query_hits_.size() && query_hits_[hit].a == static_cast<uint32_t>(i); ++hit) {
+            out.push_back(query_hits_[hit].b);
+        }
+    }
+    offsets[count] = static_cast<uint32_t>(out.size());
+}
+
+void BroadPhase::rays(TaskPool& tasks, const RayQuery* queries, int count, QueryHit* hits) const {
+    tasks.for_each(count, queries_per_task, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) {
+            const RayQuery& q = queries[i];
+            hits[i].index = ray(q.origin, q.translation, q.max_t, hits[i].at);
+        }
+    });
+}
+
+void BroadPhase::cast_boxes(TaskPool& tasks, const CastQuery* queries, int count, QueryHit* hits) const {
+    tasks.for_each(count, queries_per_task, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) {
+            const CastQuery& q = queries[i];
+            hits[i].index = cast_box(q.lower, q.upper, q.translation, q.max_t, hits[i].at);
+        }
+    });
+}
+
+void BroadPhase::nearest_boxes(TaskPool& tasks, const NearestQuery* queries, int count, QueryHit* hits) const {
+    tasks.for_each(count, queries_per_task, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) {
+            hits[i].index = nearest(queries[i].point, queries[i].max_distance, hits[i].at);
+        }
+    });
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
 
 void BroadPhase::boxes(Array<BroadPhaseBox>& out) const {
     std::visit([&](const auto& s) { s.boxes(out); }, structure_);
 }
 
 size_t BroadPhase::bytes() const {
-    return std::visit([](const auto& s) { return s.bytes(); }, structure_);
+    size_t own = query_chunks_.bytes() + query_hits_.bytes();
+    return own + std::visit([](const auto& s) { return s.bytes(); }, structure_);
+}
+
+const char* BroadPhase::check() const {
+    return std::visit([](const auto& s) { return s.check(); }, structure_);
 }
 
 }  // namespace lendulet

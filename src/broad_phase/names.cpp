@@ -9,9 +9,13 @@ namespace lendulet {
 
 namespace {
 
-constexpr std::array<std::pair<BroadPhaseType, std::string_view>, 3> names{{
+constexpr std::array<std::pair<BroadPhaseType, std::string_view>, 7> names{{
     {BroadPhaseType::all_pairs, "all-pairs"},
     {BroadPhaseType::sweep_1, "sweep-1"},
+    {BroadPhaseType::sweep_3, "sweep-3"},
+    {BroadPhaseType::rtree_quadratic, "rtree-quadratic"},
+    {BroadPhaseType::rtree_star, "rtree-star"},
+    {BroadPhaseType::rtree_str, "rtree-str"},
     {BroadPhaseType::rtree_omt, "rtree-omt"},
 }};
 

@@ -51,6 +51,7 @@ public:
     PairWriter& operator=(const PairWriter&) = delete;
 
     void write(uint32_t a, uint32_t b) { *next_++ = a < b ? BoxPair{a, b} : BoxPair{b, a}; }
+    void write_as_it_is(uint32_t a, uint32_t b) { *next_++ = {a, b}; }
 
 private:
     PairList& list_;

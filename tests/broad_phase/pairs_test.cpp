@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "broad_phase/support.h"
+#include "scale.h"
 
 using namespace lendulet;
 using namespace lendulet::broad_phase_test;
@@ -23,6 +24,7 @@ void check(const Boxes& boxes, const std::string& what) {
             set_fixed(broad_phase, fixed);
             set_moving(broad_phase, moving);
             ASSERT_EQ(found_pairs(broad_phase, tasks), expected) << what << ", split " << split << name_of(type);
+            ASSERT_STREQ(broad_phase.check(), "") << what << name_of(type);
         }
     }
 }
@@ -52,6 +54,47 @@ TEST(PairsTest, TwentyThousandBoxes) {
         BroadPhase broad_phase(type, &memory);
         set_moving(broad_phase, boxes);
         EXPECT_EQ(found_pairs(broad_phase, tasks), expected) << name_of(type);
+    }
+}
+
+TEST(PairsTest, AThousandSeeds) {
+    for (int seed = 0; seed < scaled(1000, 20); ++seed) {
+        Random random(static_cast<uint32_t>(seed) + 1000);
+        int root = random.below(33);
+        const std::string& kind = distributions[static_cast<size_t>(seed) % distributions.size()];
+        bool dense = kind == "one point" || kind == "nested";  // all boxes overlap
+        check(make_boxes(kind, dense ? root * 3 : root * root * 1000 / 1024, static_cast<uint32_t>(seed)), kind);
+        if (HasFatalFailure()) return;
+    }
+}
+
+TEST(PairsTest, TheSweepOfTheTestsIsItselfExact) {
+    for (const std::string& kind : distributions) {
+        bool dense = kind == "one point" || kind == "nested";
+        Boxes boxes = make_boxes(kind, dense ? 300 : 3000, 77);
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_EQ(pairs_by_sweep(boxes, axis), expected_pairs({}, boxes)) << kind;
+        }
+    }
+    Boxes boxes = make_boxes("uniform", scaled(20000, 2000), 78);
+    EXPECT_EQ(pairs_by_sweep(boxes, 0), expected_pairs({}, boxes));
+}
+
+// The structures whose time grows with the square of the count are left out, but for one run of the faster one.
+TEST(PairsTest, TenSeedsOfAHundredThousandBoxes) {
+    TaskPool tasks(1);
+    Memory memory;
+    const char* kinds[] = {"uniform", "ground", "line x", "line y", "line z"};
+    for (int seed = 0; seed < scaled(10, 2); ++seed) {
+        const std::string kind = kinds[seed % 5];
+        Boxes boxes = make_boxes(kind, scaled(100000), static_cast<uint32_t>(seed) + 40);
+        Pairs expected = pairs_by_sweep(boxes, kind == "line y" ? 1 : kind == "line z" ? 2 : 0);
+        for (BroadPhaseType type : all_types) {
+            if (type == BroadPhaseType::all_pairs || (type == BroadPhaseType::sweep_3 && seed > 0)) continue;
+            BroadPhase broad_phase(type, &memory);
+            set_moving(broad_phase, boxes);
+            ASSERT_EQ(found_pairs(broad_phase, tasks), expected) << kind << ' ' << name_of(type);
+        }
     }
 }
 

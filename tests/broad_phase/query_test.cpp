@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "broad_phase/support.h"
+#include "scale.h"
 
 using namespace lendulet;
 using namespace lendulet::broad_phase_test;
@@ -15,15 +16,15 @@ struct Hit {
     float t = 0;
 };
 
-// Where the segment enters a box: the slab test written case by case.
-bool enters(const BroadBox& box, const float origin[3], const float along[3], float max_t, float& t) {
+// When a moving box (a point for a ray) enters another: the slab test written case by case.
+bool enters(const BroadBox& box, const BroadBox& mover, const float along[3], float max_t, float& t) {
     float from = 0, to = max_t;
     for (int d = 0; d < 3; ++d) {
         if (along[d] == 0) {
-            if (origin[d] < box.lower[d] || origin[d] > box.upper[d]) return false;
+            if (mover.upper[d] < box.lower[d] || mover.lower[d] > box.upper[d]) return false;
             continue;
         }
-        float a = (box.lower[d] - origin[d]) / along[d], b = (box.upper[d] - origin[d]) / along[d];
+        float a = (box.lower[d] - mover.upper[d]) / along[d], b = (box.upper[d] - mover.lower[d]) / along[d];
         from = std::fmax(from, std::fmin(a, b));
         to = std::fmin(to, std::fmax(a, b));
     }
@@ -31,13 +32,30 @@ bool enters(const BroadBox& box, const float origin[3], const float along[3], fl
     return from <= to;
 }
 
-Hit expected_hit(const Boxes& boxes, const float origin[3], const float along[3], float max_t) {
+void take_better(Hit& best, uint32_t index, float t) {
+    if (best.index == no_box || t < best.t || (t == best.t && index < best.index)) best = {index, t};
+}
+
+Hit expected_cast(const Boxes& boxes, const BroadBox& mover, const float along[3], float max_t) {
     Hit best;
     for (const BroadBox& box : boxes) {
         float t;
-        if (!enters(box, origin, along, max_t, t)) continue;
-        if (best.index == no_box || t < best.t || (t == best.t && box.index < best.index)) best = {box.index, t};
+        if (enters(box, mover, along, max_t, t)) take_better(best, box.index, t);
     }
+    return best;
+}
+
+Hit expected_nearest(const Boxes& boxes, const float point[3], float max_distance) {
+    Hit best;
+    for (const BroadBox& box : boxes) {
+        float squared = 0;
+        for (int d = 0; d < 3; ++d) {
+            float gap = std::fmax(std::fmax(box.lower[d] - point[d], point[d] - box.upper[d]), 0.0f);
+            squared += gap * gap;
+        }
+        if (max_distance >= 0 && squared <= max_distance * max_distance) take_better(best, box.index, squared);
+    }
+    best.t = std::sqrt(best.t);
     return best;
 }
 
@@ -56,14 +74,26 @@ protected:
         all_ = moving_;
         all_.insert(all_.end(), fixed_.begin(), fixed_.end());
     }
+    void expect_hit(const Hit& found, const Hit& expected, const char* what) {
+        ASSERT_EQ(found.index, expected.index) << what << " of " << all_.size();
+        if (expected.index != no_box) {
+            ASSERT_EQ(found.t, expected.t) << what;
+        }
+    }
+    void check_cast(const BroadBox& mover, std::array<float, 3> along, float max_t) {
+        Hit found;
+        found.index = broad_phase_.cast_box(mover.lower, mover.upper, along.data(), max_t, found.t);
+        expect_hit(found, expected_cast(all_, mover, along.data(), max_t), "cast");
+    }
     void check_ray(std::array<float, 3> origin, std::array<float, 3> along, float max_t) {
-        Hit expected = expected_hit(all_, origin.data(), along.data(), max_t);
         Hit found;
         found.index = broad_phase_.ray(origin.data(), along.data(), max_t, found.t);
-        ASSERT_EQ(found.index, expected.index) << origin[0] << ' ' << origin[1] << ' ' << origin[2];
-        if (expected.index != no_box) {
-            ASSERT_EQ(found.t, expected.t);
-        }
+        expect_hit(found, expected_cast(all_, make_box(origin, origin, 0), along.data(), max_t), "ray");
+    }
+    void check_nearest(std::array<float, 3> point, float max_distance) {
+        Hit found;
+        found.index = broad_phase_.nearest(point.data(), max_distance, found.t);
+        expect_hit(found, expected_nearest(all_, point.data(), max_distance), "nearest");
     }
     void check_box(const BroadBox& box) {
         Array<uint32_t> found;
@@ -96,6 +126,8 @@ TEST_P(QueryTest, BoxesAndRaysEqualAScan) {
                 }
                 check_ray(from, along, random.below(5) ? 1 : random.uniform(0, 100));
                 check_box(box_around(from, half, 0));
+                check_cast(box_around(from, half, 0), along, random.below(5) ? 1 : random.uniform(0, 100));
+                check_nearest(from, random.below(3) ? inf : random.uniform(0, 5));
             }
         }
     }
@@ -107,6 +139,11 @@ TEST_P(QueryTest, DegenerateQueries) {
     check_ray({3, 3, 3}, {1, 0, 0}, 0);
     check_ray({3, -50, 3}, {-0.0f, 1, 0}, inf);
     check_ray({-1e30f, 3, 3}, {1e30f, 0, 0}, 2);
+    check_cast(make_box({3, 3, 3}, {9, 9, 9}, 0), {0, 0, 0}, 1);
+    check_cast(make_box({-1e30f, 3, 3}, {-1e29f, 4, 4}, 0), {1e30f, 0, 0}, 2);
+    check_nearest({3, 3, 3}, 0);
+    check_nearest({3, 3, 3}, -1);
+    check_nearest({1e15f, -1e15f, 3}, inf);
     check_ray({moving_[9].lower[0], moving_[9].lower[1], -100}, {0, 0, 1}, 1000);
     check_box(make_box({-inf, -inf, -inf}, {inf, inf, inf}, 0));
     check_box(make_box({inf, inf, inf}, {inf, inf, inf}, 0));
@@ -114,6 +151,76 @@ TEST_P(QueryTest, DegenerateQueries) {
     const BroadBox& corner = moving_[100];
     check_box(make_box({corner.upper[0], corner.upper[1], corner.upper[2]},
                        {corner.upper[0], corner.upper[1], corner.upper[2]}, 0));
+}
+
+// As many rays as make a million for all structures together, in scenes that change now and then.
+TEST_P(QueryTest, ManyRays) {
+    Random random(5);
+    const char* kinds[] = {"uniform", "clustered", "sizes", "plane", "line z"};
+    const int rays = scaled(1000000 / static_cast<int>(std::size(all_types)) + 1), per_scene = 500;
+    for (int i = 0; i < rays; ++i) {
+        if (i % per_scene == 0) fill(kinds[i / per_scene % 5], 20 + random.below(60));
+        float reach = 3 + 0.05f * static_cast<float>(all_.size());
+        std::array<float, 3> from, along;
+        for (size_t d = 0; d < 3; ++d) {
+            from[d] = random.uniform(-2, reach);
+            along[d] = random.below(8) ? random.uniform(-20, 20) : 0;
+        }
+        check_ray(from, along, 1);
+        if (HasFatalFailure()) return;
+    }
+}
+
+TEST_P(QueryTest, BatchesAnswerAsSingleQueriesDo) {
+    fill("clustered", 900);
+    TaskPool tasks(3);
+    Random random(8);
+    constexpr int n = 500;
+    std::vector<BoxQuery> boxes(n);
+    std::vector<RayQuery> rays(n);
+    std::vector<CastQuery> casts(n);
+    std::vector<NearestQuery> points(n);
+    for (size_t i = 0; i < n; ++i) {
+        for (int d = 0; d < 3; ++d) {
+            float from = random.uniform(-5, 30), along = random.uniform(-20, 20), half = random.uniform(0, 2);
+            boxes[i].lower[d] = casts[i].lower[d] = from - half;
+            boxes[i].upper[d] = casts[i].upper[d] = from + half;
+            rays[i].origin[d] = points[i].point[d] = from;
+            rays[i].translation[d] = casts[i].translation[d] = along;
+        }
+        rays[i].max_t = casts[i].max_t = 1;
+        points[i].max_distance = random.uniform(0, 9);
+    }
+    Array<uint32_t> offsets, hits;
+    hits.push_back(7);  // appended to
+    broad_phase_.query_boxes(tasks, boxes.data(), n, offsets, hits);
+    std::vector<QueryHit> by_ray(n), by_cast(n), by_point(n);
+    broad_phase_.rays(tasks, rays.data(), n, by_ray.data());
+    broad_phase_.cast_boxes(tasks, casts.data(), n, by_cast.data());
+    broad_phase_.nearest_boxes(tasks, points.data(), n, by_point.data());
+    ASSERT_EQ(offsets.count(), n + 1);
+    EXPECT_EQ(offsets[0], 1u);
+    EXPECT_EQ(offsets[n], hits.size());
+    int found = 0;
+    for (size_t i = 0; i < n; ++i) {
+        Array<uint32_t> single;
+        broad_phase_.query_box(boxes[i].lower, boxes[i].upper, single);
+        EXPECT_EQ(std::vector<uint32_t>(single.begin(), single.end()),
+                  std::vector<uint32_t>(hits.begin() + offsets[i], hits.begin() + offsets[i + 1]));
+        float t = 0;
+        auto same = [&](const QueryHit& hit, uint32_t index) {
+            ASSERT_EQ(hit.index, index);
+            if (index == no_box) return;
+            ASSERT_EQ(hit.at, t);
+            ++found;
+        };
+        same(by_ray[i], broad_phase_.ray(rays[i].origin, rays[i].translation, 1, t));
+        same(by_cast[i], broad_phase_.cast_box(casts[i].lower, casts[i].upper, casts[i].translation, 1, t));
+        same(by_point[i], broad_phase_.nearest(points[i].point, points[i].max_distance, t));
+    }
+    EXPECT_GT(found, n);
+    broad_phase_.query_boxes(tasks, nullptr, 0, offsets, hits);
+    EXPECT_EQ(offsets.count(), 1);
 }
 
 TEST_P(QueryTest, EqualHitsGiveTheSmallestIndex) {

@@ -15,8 +15,9 @@
 namespace lendulet::broad_phase_test {
 
 inline constexpr float inf = std::numeric_limits<float>::infinity();
-inline constexpr BroadPhaseType all_types[] = {BroadPhaseType::all_pairs, BroadPhaseType::sweep_1,
-                                               BroadPhaseType::rtree_omt};
+inline constexpr BroadPhaseType all_types[] = {
+    BroadPhaseType::all_pairs,  BroadPhaseType::sweep_1,   BroadPhaseType::sweep_3,  BroadPhaseType::rtree_quadratic,
+    BroadPhaseType::rtree_star, BroadPhaseType::rtree_str, BroadPhaseType::rtree_omt};
 
 using Boxes = std::vector<BroadBox>;
 using Pairs = std::vector<std::pair<uint32_t, uint32_t>>;
@@ -90,6 +91,20 @@ inline Pairs expected_pairs(const Boxes& fixed, const Boxes& moving) {
         }
         for (const BroadBox& box : fixed) {
             if (overlapping(moving[i], box)) pairs.push_back(std::minmax({moving[i].index, box.index}));
+        }
+    }
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+// The same by a sweep along an axis, for more boxes than can be compared each with each.
+inline Pairs pairs_by_sweep(Boxes boxes, int axis) {
+    std::stable_sort(boxes.begin(), boxes.end(),
+                     [axis](const BroadBox& a, const BroadBox& b) { return a.lower[axis] < b.lower[axis]; });
+    Pairs pairs;
+    for (size_t i = 0; i < boxes.size(); ++i) {
+        for (size_t j = i + 1; j < boxes.size() && boxes[j].lower[axis] <= boxes[i].upper[axis]; ++j) {
+            if (overlapping(boxes[i], boxes[j])) pairs.push_back(std::minmax({boxes[i].index, boxes[j].index}));
         }
     }
     std::sort(pairs.begin(), pairs.end());

@@ -43,7 +43,9 @@ TEST_P(Determinism, WorkersAndWidths) {
 
 TEST_P(Determinism, BroadPhases) {
     uint64_t expected = hash_after(GetParam(), {});
-    for (BroadPhaseType type : {BroadPhaseType::all_pairs, BroadPhaseType::sweep_1, BroadPhaseType::rtree_omt})
+    for (BroadPhaseType type :
+         {BroadPhaseType::all_pairs, BroadPhaseType::sweep_1, BroadPhaseType::sweep_3, BroadPhaseType::rtree_quadratic,
+          BroadPhaseType::rtree_star, BroadPhaseType::rtree_str, BroadPhaseType::rtree_omt})
         same_as(
             expected, [&](WorldBuilder& builder) { builder.broad_phase(type).workers(2); }, std::string(name_of(type)));
 }

@@ -194,7 +194,7 @@ TEST_P(Queries, EveryColliderHasALeafBoxAndEveryBoxHoldsItsBody) {
         if (view.leaf) leaves.push_back(view.box);
     });
     EXPECT_EQ(leaves.size(), static_cast<size_t>(world.body_count()));
-    EXPECT_EQ(deepest > 0, GetParam() == BroadPhaseType::rtree_omt);
+    EXPECT_EQ(deepest > 0, name_of(GetParam()).starts_with("rtree"));
     for (int i = 0; i < world.body_count(); ++i) {
         Aabb box = world.get_static(world.body(i)).aabb();
         bool held = std::any_of(leaves.begin(), leaves.end(), [&](const Aabb& leaf) {
@@ -204,8 +204,9 @@ TEST_P(Queries, EveryColliderHasALeafBoxAndEveryBoxHoldsItsBody) {
     }
 }
 INSTANTIATE_TEST_SUITE_P(Structures, Queries,
-                         ::testing::Values(BroadPhaseType::all_pairs, BroadPhaseType::sweep_1,
-                                           BroadPhaseType::rtree_omt));
+                         ::testing::Values(BroadPhaseType::all_pairs, BroadPhaseType::sweep_1, BroadPhaseType::sweep_3,
+                                           BroadPhaseType::rtree_quadratic, BroadPhaseType::rtree_star,
+                                           BroadPhaseType::rtree_str, BroadPhaseType::rtree_omt));
 
 }  // namespace
 }  // namespace lendulet::testing

@@ -1,4 +1,4 @@
-#include "broad_phase/omt.h"
+#include "broad_phase/rtree/omt.h"
 
 #include <algorithm>
 #include <cfloat>

@@ -1,4 +1,4 @@
-#include "broad_phase/box_tree.h"
+#include "broad_phase/rtree/box_tree.h"
 
 #include "math/wide/gather.h"
 
@@ -8,6 +8,10 @@ namespace {
 
 // Below this a set is not cut at all: its few leaves are tested against each other faster than they could be improved.
 constexpr int smallest_cut = 32;
+// The tree is built anew after this many refits, or once its leaves have grown by this factor. A build costs about a
+// third of a search for pairs.
+constexpr int most_refits = 64;
+constexpr float most_growth = 1.15f;
 // Work is cut into tasks of about this many boxes.
 constexpr int boxes_per_task = 2048;
 
@@ -29,12 +33,6 @@ struct Bounds {
 };
 
 constexpr BroadBox empty_box{{infinity, infinity, infinity}, no_box, {-infinity, -infinity, -infinity}, 0};
-
-bool bounded(const BroadBox& box) {
-    bool yes = true;
-    for (int d = 0; d < 3; ++d) yes &= absolute(box.lower[d]) <= FLT_MAX && absolute(box.upper[d]) <= FLT_MAX;
-    return yes;
-}
 
 // Reads the boxes of a leaf from the caller's array, transposes them into the leaf and returns their bounds.
 Bounds fill_leaf(BoxBlock& leaf, uint32_t index[block_size], const BroadBox* boxes, const uint32_t slot[block_size]) {
@@ -58,24 +56,13 @@ Bounds fill_leaf(BoxBlock& leaf, uint32_t index[block_size], const BroadBox* box
     return bounds;
 }
 
-// Bounds of the boxes of a block; empty lanes do not count.
-void block_bounds(const BoxBlock& block, float lower[3], float upper[3]) {
-    for (int d = 0; d < 3; ++d) {
-        lower[d] = infinity;
-        upper[d] = -infinity;
-        for (int i = 0; i < block_size; ++i) {
-            lower[d] = minimum(block.lower[d][i], lower[d]);
-            upper[d] = maximum(block.upper[d][i], upper[d]);
-        }
-    }
-}
-
 }  // namespace
 
 BoxTree::BoxTree(const Memory* memory)
     : nodes_(memory),
       index_(memory),
       slot_(memory),
+      lane_(memory),
       leaf_size_(memory),
       group_growth_(memory),
       unbounded_(memory),
@@ -87,6 +74,9 @@ BoxTree::BoxTree(const Memory* memory)
 
 void BoxTree::build(const BroadBox* boxes, int count, TaskPool* tasks) {
     count_ = count;
+    refits_ = 0;
+    ++builds_;
+    lanes_known_ = false;
     collect(boxes, count);
     if (count_bounded() == 0) return;
     plan_levels();
@@ -193,6 +183,12 @@ void BoxTree::arrange_in_parallel(TaskPool& tasks) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Bounds
 
+void BoxTree::set(const BroadBox* boxes, int count, TaskPool* tasks) {
+    bool keep = count == count_ && refits_ < most_refits && builds_ > 0;
+    if (keep && refit(boxes, tasks) && growth_ < most_growth) ++refits_;
+    else build(boxes, count, tasks);
+}
+
 bool BoxTree::refit(const BroadBox* boxes, TaskPool* tasks) {
     for (int i = 0; i < unbounded_.count(); ++i) {
         unbounded_[i] = boxes[unbounded_slot_[i]];
@@ -219,7 +215,7 @@ bool BoxTree::fill(const BroadBox* boxes, bool building, TaskPool* tasks) {
 // jumped across the world cost no more than their leaves meeting all others.
 float BoxTree::fill_group(const BroadBox* boxes, int group, bool building) {
     constexpr float growth_cap = 1000;
-    int fan_out = leaves_per_group();
+    int fan_out = fan_out_[group_level()];
     BoxBlock& block = nodes_[first_node_[group_level()] + group];
     float sum = 0;
     for (int k = 0; k < fan_out; ++k) {
@@ -257,13 +253,13 @@ void BoxTree::fill_above_groups() {
 // ---------------------------------------------------------------------------------------------------------------------
 // Queries
 
-WideBox BoxTree::group_bounds(int i) const {
-    if (group_level() > 0) {
-        int fan_out = fan_out_[group_level() - 1];
-        return spread_lane(node({group_level() - 1, i / fan_out}), i % fan_out);
+WideBox BoxTree::bounds_of(Ref group) const {
+    if (group.level > 0) {
+        int fan_out = fan_out_[group.level - 1];
+        return spread_lane(block({group.level - 1, group.node / fan_out}), group.node % fan_out);
     }
     float lower[3], upper[3];
-    block_bounds(group(i), lower, upper);
+    block_bounds(block(group), lower, upper);
     return spread(lower, upper);
 }
 
@@ -275,70 +271,50 @@ uint32_t BoxTree::boxes_in_leaf(int leaf) const {
     return lanes;
 }
 
-void BoxTree::query_box(const float lower[3], const float upper[3], Array<uint32_t>& out) const {
-    for (const BroadBox& box : unbounded_) {
-        if (overlap(box, lower, upper)) out.push_back(box.index);
-    }
-    visit_overlapping(lower, upper, [&](uint32_t index) { out.push_back(index); });
-}
-
-void BoxTree::cast(RayCast& ray) const {
-    for (const BroadBox& box : unbounded_) ray.offer(ray_entry<float>(ray, box.lower, box.upper), box.index);
-    if (group_count() == 0) return;
-    struct Entry {
-        Place place;
-        float t;
-    };
-    Entry stack[stack_size];
-    stack[0] = {{0, 0}, 0};
-    for (int top = 1; top > 0;) {
-        auto [place, t] = stack[--top];
-        if (t > ray.best_t) continue;  // at equal t there may be a smaller index
-        if (place.level == levels_ - 1) {
-            cast_into(ray, node(place), boxes_in_leaf(place.node), leaf_indices(place.node));
-            continue;
-        }
-        float entry[block_size];
-        ray_entries(ray, node(place), entry);
-        for (int k = 0, bottom = top; k < fan_out_[place.level]; ++k) {
-            if (entry[k] > ray.best_t) continue;
-            int at = top++;  // sorted so that the nearest comes off first
-            for (; at > bottom && stack[at - 1].t < entry[k]; --at) stack[at] = stack[at - 1];
-            stack[at] = {child(place, k), entry[k]};
-        }
+void BoxTree::prepare_look_up() {
+    if (lanes_known_) return;
+    lanes_known_ = true;
+    lane_.assign(static_cast<size_t>(count_), no_box);
+    if (empty()) return;
+    for (int i = 0; i < slot_.count(); ++i) {
+        if (slot_[i] != no_box) lane_[slot_[i]] = static_cast<uint32_t>(i);
     }
 }
 
-void BoxTree::boxes(Array<BroadPhaseBox>& out) const {
-    auto append = [&](const BoxBlock& block, int lane, int depth, bool leaf, uint32_t index) {
-        out.push_back({{block.lower[0][lane], block.lower[1][lane], block.lower[2][lane]},
-                       {block.upper[0][lane], block.upper[1][lane], block.upper[2][lane]},
-                       depth,
-                       leaf,
-                       index});
-    };
-    for (const BroadBox& b : unbounded_) {
-        out.push_back({{b.lower[0], b.lower[1], b.lower[2]}, {b.upper[0], b.upper[1], b.upper[2]}, 0, true, b.index});
+BroadBox BoxTree::box(int place) const {
+    LENDULET_ASSERT(lanes_known_);
+    int lane = static_cast<int>(lane_[place]);
+    if (lane_[place] != no_box)
+        return box_in(nodes_[first_node_[levels_ - 1] + lane / block_size], lane % block_size, index_[lane]);
+    for (int i = 0; unbounded_.count() > i; ++i) {
+        if (unbounded_slot_[i] == static_cast<uint32_t>(place)) return unbounded_[i];
     }
-    if (group_count() == 0) return;
-    BroadPhaseBox root{{}, {}, 0, false, no_box};
-    block_bounds(node({0, 0}), root.lower, root.upper);
-    out.push_back(root);
-    for (int level = 0; level < levels_; ++level) {
-        bool leaf = level == levels_ - 1;
+    return empty_box;
+}
+
+const char* BoxTree::check() const {
+    for (int level = 0; level + 1 < levels_ && !empty(); ++level) {
         for (int i = 0; i < nodes_at_[level]; ++i) {
-            uint32_t lanes = leaf ? boxes_in_leaf(i) : (1u << fan_out_[level]) - 1;
-            while (lanes) {
-                int k = take_bit(lanes);
-                append(node({level, i}), k, level + 1, leaf, leaf ? leaf_indices(i)[k] : no_box);
+            for (int k = 0; k < fan_out_[level]; ++k) {
+                float lower[3], upper[3];
+                block_bounds(block(child({level, i}, k)), lower, upper);
+                for (int d = 0; d < 3; ++d) {
+                    if (block({level, i}).lower[d][k] != lower[d] || block({level, i}).upper[d][k] != upper[d]) {
+                        return "a node's bounds are not those of its children";
+                    }
+                }
             }
         }
     }
+    int held = 0;
+    if (empty()) return "";
+    for (uint32_t slot : slot_) held += slot != no_box;
+    return held == count_bounded() ? "" : "the leaves do not hold all boxes";
 }
 
 size_t BoxTree::bytes() const {
-    return nodes_.bytes() + index_.bytes() + slot_.bytes() + leaf_size_.bytes() + group_growth_.bytes() +
-           unbounded_.bytes() + unbounded_slot_.bytes() + centres_.bytes();
+    return nodes_.bytes() + index_.bytes() + slot_.bytes() + lane_.bytes() + leaf_size_.bytes() +
+           group_growth_.bytes() + unbounded_.bytes() + unbounded_slot_.bytes() + lane_.bytes() + centres_.bytes();
 }
 
 }  // namespace lendulet

@@ -1,0 +1,29 @@
+#include "broad_phase/sort.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lendulet {
+
+void sort_keys(Array<uint64_t>& keys, Array<uint64_t>& swap, int first_bit) {
+    constexpr size_t radix_pays_from = 400;  // measured: below, clearing and summing the histograms costs more
+    if (keys.size() < radix_pays_from) {
+        std::sort(keys.begin(), keys.end());  // order: total, keys that are equal cannot be told apart
+        return;
+    }
+    constexpr int digit = 11, radix = 1 << digit;
+    uint64_t differing = 0;
+    for (uint64_t key : keys) differing |= key ^ keys[0];
+    swap.resize_unset(keys.size());
+    for (int shift = first_bit; shift < 64; shift += digit) {
+        if ((differing >> shift & (radix - 1)) == 0) continue;  // all the same here
+        uint32_t place[radix] = {};
+        for (uint64_t key : keys) ++place[key >> shift & (radix - 1)];
+        uint32_t begin = 0;
+        for (uint32_t& p : place) begin += std::exchange(p, begin);
+        for (uint64_t key : keys) swap[place[key >> shift & (radix - 1)]++] = key;
+        keys.swap(swap);
+    }
+}
+
+}  // namespace lendulet
