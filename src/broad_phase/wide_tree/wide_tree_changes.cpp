@@ -42,10 +42,27 @@ bool contains(const Bounds6& home, const BroadBox& box) {
     return yes;
 }
 
+void read_lane(const BoxGroup& group, uint32_t i, BroadBox& box) {
+    for (int d = 0; d < 3; ++d) {
+        box.lower[d] = group.bounds[d][i];
+        box.upper[d] = group.bounds[3 + d][i];
+    }
+    box.index = group.index[i];
+}
+
+void write_lane(BoxGroup& group, uint32_t i, const BroadBox& box) {
+    for (int d = 0; d < 3; ++d) {
+        group.bounds[d][i] = box.lower[d];
+        group.bounds[3 + d][i] = box.upper[d];
+    }
+    group.index[i] = box.index;
+}
+
 }  // namespace
 
 void WideTreeSet::begin_changes() {
     touched_.clear();
+    marks_ = 0;
     if (mapped_) return;
     mapped_ = true;
     lane_of_.resize_unset(static_cast<size_t>(count_));
@@ -57,7 +74,7 @@ void WideTreeSet::begin_changes() {
     size_t groups = groups_.size();
     home_.resize_unset(groups);
     size_.resize_unset(groups);
-    first_change_.resize_unset(groups);
+    first_row_.resize_unset(groups);
     changed_.assign(groups, 0);
     is_touched_.assign(groups, 0);
     size_sum_ = 0;
@@ -75,11 +92,7 @@ BroadBox WideTreeSet::box_at(uint32_t place) const {
     if (lane & beside) return unbounded_[lane & ~beside];
     const BoxGroup& group = groups_[lane / group_lanes];
     BroadBox box{};
-    for (int d = 0; d < 3; ++d) {
-        box.lower[d] = group.bounds[d][lane % group_lanes];
-        box.upper[d] = group.bounds[3 + d][lane % group_lanes];
-    }
-    box.index = group.index[lane % group_lanes];
+    read_lane(group, lane % group_lanes, box);
     return box;
 }
 
@@ -106,6 +119,7 @@ bool WideTreeSet::mark(uint32_t place) {
     uint32_t lane = lane_of_[place];
     if (lane & beside) return false;
     changed_[lane / group_lanes] |= uint64_t{1} << lane % group_lanes;
+    ++marks_;
     touch(lane / group_lanes);
     return true;
 }
@@ -124,41 +138,29 @@ void WideTreeSet::sort_touched() {
 
 void WideTreeSet::gather(const BroadBox* boxes, Array<uint32_t>& jumped) {
     sort_touched();
-    changed_lane_.clear();
-    size_t most = WideTreeChanges::padding;
-    for (uint32_t group : touched_) most += static_cast<size_t>(__builtin_popcountll(changed_[group]));
-    changed_lane_.resize_unset(most);
-    changed_index_.resize_unset(most);
-    for (int k = 0; k < bound_count; ++k) {
-        before_[k].resize_unset(most);
-        after_[k].resize_unset(most);
-    }
-    size_t n = 0;
+    rows_.resize_unset(static_cast<size_t>(marks_));
+    row_lane_.resize_unset(static_cast<size_t>(marks_));
+    uint32_t n = 0;
     for (uint32_t g : touched_) {
-        const BoxGroup& group = groups_[g];
+        first_row_[g] = n;
         const Bounds6 home = home_[g];
-        first_change_[g] = static_cast<uint32_t>(n);
+        const BoxGroup& group = groups_[g];
         for (uint64_t left = changed_[g]; left; left &= left - 1) {
-            int i = __builtin_ctzll(left);
-            uint32_t lane = g * group_lanes + static_cast<uint32_t>(i);
-            const BroadBox& box = boxes[place_[lane]];
-            if (!contains(home, box) || box.index != group.index[i]) {
-                changed_[g] &= ~(uint64_t{1} << i);
-                jumped.push_back(place_[lane]);
+            uint32_t i = static_cast<uint32_t>(__builtin_ctzll(left)), lane = g * group_lanes + i;
+            WideTreeChange& row = rows_[n];
+            row.after = boxes[place_[lane]];
+            read_lane(group, i, row.before);
+            row_lane_[n] = lane;
+            if (contains(home, row.after) && row.after.index == row.before.index) {
+                ++n;
                 continue;
             }
-            for (int d = 0; d < 3; ++d) {
-                before_[d][n] = group.bounds[d][i];
-                before_[3 + d][n] = group.bounds[3 + d][i];
-                after_[d][n] = box.lower[d];
-                after_[3 + d][n] = box.upper[d];
-            }
-            changed_index_[n] = box.index;
-            changed_lane_[n++] = lane;
+            changed_[g] &= ~(uint64_t{1} << i);
+            jumped.push_back(place_[lane]);
         }
     }
-    changed_index_.resize_unset(n + WideTreeChanges::padding);
-    changed_lane_.resize_unset(n);
+    rows_.resize_unset(n);
+    row_lane_.resize_unset(n);
 }
 
 void WideTreeSet::clear_lane(uint32_t lane) {
@@ -184,17 +186,7 @@ void WideTreeSet::remove(uint32_t place) {
     touch(lane / group_lanes);
 }
 
-WideTreeChanges WideTreeSet::changes() const {
-    WideTreeChanges changes;
-    changes.changed = changed_.data();
-    changes.first = first_change_.data();
-    changes.index = changed_index_.data();
-    for (int k = 0; k < bound_count; ++k) {
-        changes.before[k] = before_[k].data();
-        changes.after[k] = after_[k].data();
-    }
-    return changes;
-}
+WideTreeChanges WideTreeSet::changes() const { return {changed_.data(), first_row_.data(), rows_.data()}; }
 
 // The bounds of the levels above the touched groups from those below.
 void WideTreeSet::raise_touched() {
@@ -214,27 +206,33 @@ void WideTreeSet::raise_touched() {
     }
 }
 
+void WideTreeSet::extend_bounds(int level, uint32_t child, const BroadBox& box) {
+    BoundsBlock& block = blocks_[static_cast<uint32_t>(first_block_[level]) + child / block_lanes];
+    for (int d = 0; d < 3; ++d) {
+        float &lower = block.bounds[d][child % block_lanes], &upper = block.bounds[3 + d][child % block_lanes];
+        lower = minimum(box.lower[d], lower);
+        upper = maximum(box.upper[d], upper);
+    }
+}
+
 void WideTreeSet::widen() {
     sort_touched();
-    for (uint32_t g : touched_) {
-        Bounds6 bounds = bounds_at(0, g);
-        uint32_t first = first_change_[g];
-        for (uint32_t i = first; i < first + static_cast<uint32_t>(__builtin_popcountll(changed_[g])); ++i) {
-            for (int d = 0; d < 3; ++d) {
-                bounds.at[d] = minimum(after_[d][i], bounds.at[d]);
-                bounds.at[3 + d] = maximum(after_[3 + d][i], bounds.at[3 + d]);
-            }
+    for (size_t i = 0; i < rows_.size(); ++i) {
+        const WideTreeChange& row = rows_[i];
+        BroadBox around = row.after;
+        for (int d = 0; d < 3; ++d) {
+            around.lower[d] = minimum(row.before.lower[d], row.after.lower[d]);
+            around.upper[d] = maximum(row.before.upper[d], row.after.upper[d]);
         }
-        set_bounds(0, g, bounds);
+        write_lane(groups_[row_lane_[i] / group_lanes], row_lane_[i] % group_lanes, around);
+        extend_bounds(0, row_lane_[i] / group_lanes, row.after);
     }
     raise_touched();
 }
 
 void WideTreeSet::settle(int count) {
-    for (size_t i = 0; i < changed_lane_.size(); ++i) {
-        uint32_t lane = changed_lane_[i];
-        BoxGroup& group = groups_[lane / group_lanes];
-        for (int k = 0; k < bound_count; ++k) group.bounds[k][lane % group_lanes] = after_[k][i];
+    for (size_t i = 0; i < rows_.size(); ++i) {
+        write_lane(groups_[row_lane_[i] / group_lanes], row_lane_[i] % group_lanes, rows_[i].after);
     }
     for (uint32_t g : touched_) {
         Bounds6 bounds;
@@ -265,7 +263,7 @@ void WideTreeSet::add_group() {
     size_.push_back(0);
     changed_.push_back(0);
     is_touched_.push_back(0);
-    first_change_.push_back(0);
+    first_row_.push_back(0);
     loose_used_ = 0;
     if (before % block_lanes) return;
     plan_levels(before / block_lanes);
@@ -281,23 +279,10 @@ void WideTreeSet::insert(uint32_t place, const BroadBox& box) {
     }
     if (loose_used_ == group_lanes) add_group();
     uint32_t g = static_cast<uint32_t>(groups_.count()) - 1, i = static_cast<uint32_t>(loose_used_++);
-    BoxGroup& group = groups_[g];
-    group.index[i] = box.index;
+    write_lane(groups_[g], i, box);
     place_[g * group_lanes + i] = place;
     lane_of_[place] = g * group_lanes + i;
-    uint32_t child = g;
-    for (int d = 0; d < 3; ++d) {
-        group.bounds[d][i] = box.lower[d];
-        group.bounds[3 + d][i] = box.upper[d];
-    }
-    for (int level = 0; level < levels_; ++level, child /= block_lanes) {
-        Bounds6 bounds = bounds_at(level, child);
-        for (int d = 0; d < 3; ++d) {
-            bounds.at[d] = minimum(box.lower[d], bounds.at[d]);
-            bounds.at[3 + d] = maximum(box.upper[d], bounds.at[3 + d]);
-        }
-        set_bounds(level, child, bounds);
-    }
+    for (int level = 0; level < levels_; ++level, g /= block_lanes) extend_bounds(level, g, box);
 }
 
 // Building costs about as much as visiting one group for every four boxes. Each query since the last build has visited

@@ -1,133 +1,142 @@
 // Part of wide_tree_kernels.inl: pairs that begin and end. Which do follows from the boxes of before and after alone, so
-// no list of pairs is kept: a changed box is tested as it was and as it is against every box near either.
+// no list of pairs is kept. While the changes are searched, the lane of a changed box holds the box around both; what
+// meets it there is a candidate, which is then looked at as it was and as it is.
 
-struct ChangedHits {
-    uint64_t begun, ended;
-    uint32_t index;
+using Quad = Wide<float, 4>;
+
+template <class F>
+LENDULET_FORCE_INLINE Spread<F> spread(Quad lower, Quad upper) {
+    Spread<F> box;
+    for (int d = 0; d < 3; ++d) {
+        box.at[d] = splat<F>(lower[d]);
+        box.at[3 + d] = splat<F>(upper[d]);
+    }
+    return box;
+}
+
+// A box around a change.
+struct Reach {
+    Quad lower, upper;
+    LENDULET_FORCE_INLINE explicit Reach(const WideTreeChange& change)
+        : lower(minimum(load_wide<Quad>(change.after.lower), load_wide<Quad>(change.before.lower))),
+          upper(maximum(load_wide<Quad>(change.after.upper), load_wide<Quad>(change.before.upper))) {}
 };
 
-LENDULET_FORCE_INLINE void write_changes(PairStream& out, const ChangedHits& hits, const uint32_t* others) {
-    constexpr auto most = static_cast<ptrdiff_t>(PairList::most_at_once);
-    if (out.end - out.next < most) out.full(out);
-    BoxPair* next = out.next;
-    for (uint64_t lanes = hits.begun; lanes;) {  // a lane is in one of the two at most
-        uint32_t other = others[take_lane(lanes)];
-        *next++ = hits.index < other ? BoxPair{hits.index, other} : BoxPair{other, hits.index};
+// Groups near the changes of one, and their bounds side by side.
+template <class F>
+struct NearGroups {
+    static constexpr int most = 64, stride = most + lanes_of<F>;
+    alignas(64) float bounds[bound_count][stride];
+    int group[most];
+    int count = 0;
+
+    LENDULET_FORCE_INLINE void add(const BoundsBlock& block, uint32_t lanes, int first_group) {
+        for (int i = 0; i < block_lanes; i += lanes_of<F>) {
+            uint32_t bits = lanes >> i & ((1u << lanes_of<F>)-1);
+            for (int k = 0; k < bound_count; ++k) {
+                store_packed<F>(bounds[k] + count, bits, load_wide<F>(block.bounds[k] + i));
+            }
+            for (; bits; bits &= bits - 1) group[count++] = first_group + i + __builtin_ctz(bits);
+        }
     }
-    for (uint64_t lanes = hits.ended; lanes;) {
-        uint32_t other = others[take_lane(lanes)];
-        *next++ = hits.index > other ? BoxPair{hits.index, other} : BoxPair{other, hits.index};
+    LENDULET_FORCE_INLINE uint64_t overlapping(const Spread<F>& box) const {
+        uint64_t near = 0;
+        for (int i = 0; i < count; i += lanes_of<F>) near |= uint64_t{overlaps<F>(bounds[0] + i, stride, box)} << i;
+        return near & all_lanes >> (most - count);
+    }
+};
+
+// A change and the boxes of a group that it may begin or end a pair with.
+struct Candidates {
+    uint64_t lanes;
+    const WideTreeChange* change;
+    int group;
+};
+
+LENDULET_FORCE_INLINE bool meet(Quad lower_a, Quad upper_a, Quad lower_b, Quad upper_b) {
+    return (mask_bits((lower_a <= upper_b) & (lower_b <= upper_a)) & 7) == 7;  // the fourth lane is no bound
+}
+
+// `changed` has the changed lanes of the groups; null for a tree without.
+LENDULET_FORCE_INLINE void write_changes(const Candidates& some, const WideTreeView& tree,
+                                         const WideTreeChanges& changes, const uint64_t* changed, PairStream& out) {
+    if (out.end - out.next < static_cast<ptrdiff_t>(PairList::most_at_once)) out.full(out);
+    const BoxGroup& group = tree.groups[some.group];
+    const WideTreeChange& mine = *some.change;
+    uint64_t others_changed = changed ? changed[some.group] : 0;
+    auto quad = [](const float* p) { return load_wide<Quad>(p); };
+    BoxPair* next = out.next;
+    for (uint64_t lanes = some.lanes; lanes;) {
+        int i = take_lane(lanes);
+        Quad lower{group.bounds[0][i], group.bounds[1][i], group.bounds[2][i], 0}, lower_before = lower;
+        Quad upper{group.bounds[3][i], group.bounds[4][i], group.bounds[5][i], 0}, upper_before = upper;
+        if (others_changed >> i & 1) {
+            int earlier = __builtin_popcountll(others_changed & ~(all_lanes << i));
+            const WideTreeChange& other = changes.rows[changes.first[some.group] + static_cast<uint32_t>(earlier)];
+            lower_before = quad(other.before.lower), upper_before = quad(other.before.upper);
+            lower = quad(other.after.lower), upper = quad(other.after.upper);
+        }
+        bool was = meet(quad(mine.before.lower), quad(mine.before.upper), lower_before, upper_before);
+        bool is = meet(quad(mine.after.lower), quad(mine.after.upper), lower, upper);
+        uint32_t a = mine.after.index, b = group.index[i];
+        bool in_order = (a < b) == is;  // begun pairs ascend, ended ones descend
+        *next = {in_order ? a : b, in_order ? b : a};
+        next += was != is;
     }
     out.next = next;
 }
 
-// Bits for `count` boxes, of at most 64, whose rows are apart.
+// The changes of one group against groups near; of two changed boxes the one in the earlier lane looks at the other.
 template <class F>
-LENDULET_FORCE_INLINE uint64_t overlaps_of_rows(const float* const rows[bound_count], uint32_t first, int count,
-                                                const Spread<F>& box) {
-    uint64_t lanes = 0;
-    for (int i = 0; i < count; i += lanes_of<F>) {
-        auto row = [&](int k) { return load_wide<F>(rows[k] + first + i); };
-        LaneMask<F> hit = at_most(row(0), box.at[3]);
-        hit = at_most<F>(hit, box.at[0], row(3));
-        for (int d = 1; d < 3; ++d) {
-            hit = at_most<F>(hit, row(d), box.at[3 + d]);
-            hit = at_most<F>(hit, box.at[d], row(3 + d));
-        }
-        lanes |= uint64_t{lane_bits<F>(hit)} << i;
-    }
-    return count ? lanes & all_lanes >> (group_lanes - count) : 0;
-}
-
-template <class F>
-LENDULET_FORCE_INLINE Spread<F> spread_row(const float* const rows[bound_count], uint32_t i) {
-    Spread<F> box;
-    for (int k = 0; k < bound_count; ++k) box.at[k] = splat<F>(rows[k][i]);
-    return box;
-}
-
-// The changed boxes of a group.
-template <class F>
-struct ChangedGroup {
-    const WideTreeChanges& changes;
-    uint32_t first;
-    int count;
-
-    // Those that reach into the bounds before or after.
-    LENDULET_FORCE_INLINE uint64_t near(const Spread<F>& bounds) const {
-        return overlaps_of_rows<F>(changes.before, first, count, bounds) |
-               overlaps_of_rows<F>(changes.after, first, count, bounds);
-    }
-    // What they begin and end with the boxes of a group that do not change.
-    LENDULET_FORCE_INLINE void with_unchanged(uint64_t mine, const BoxGroup& group, uint64_t unchanged,
-                                              PairStream& out) const {
-        ChangedHits hits[group_lanes];
+LENDULET_FORCE_INLINE void search_near(const NearGroups<F>& near, const WideTreeView& tree,
+                                       const WideTreeChanges& changes, const uint64_t* changed, int group,
+                                       PairStream& out) {
+    Candidates found[NearGroups<F>::most];
+    const WideTreeChange* change = changes.rows + changes.first[group];
+    for (uint64_t mine = changes.changed[group]; mine; ++change) {
+        int lane = take_lane(mine);
+        Reach reach(*change);
+        Spread<F> box = spread<F>(reach.lower, reach.upper);
         int n = 0;
-        while (mine) {
-            uint32_t i = first + static_cast<uint32_t>(take_lane(mine));
-            uint64_t before = overlaps<F>(group, 0, group_lanes, spread_row<F>(changes.before, i));
-            uint64_t after = overlaps<F>(group, 0, group_lanes, spread_row<F>(changes.after, i));
-            uint64_t differ = (before ^ after) & unchanged;
-            hits[n] = {after & differ, before & differ, changes.index[i]};
-            n += differ != 0;
+        for (uint64_t groups = near.overlapping(box); groups;) {
+            int other = near.group[take_lane(groups)];
+            uint64_t lanes = overlaps<F>(tree.groups[other], 0, group_lanes, box);
+            if (changed) {
+                uint64_t later = other > group ? all_lanes : other < group ? 0 : all_lanes << lane << 1;
+                lanes &= ~changed[other] | later;
+            }
+            found[n] = {lanes, change, other};
+            n += lanes != 0;
         }
-        for (int i = 0; i < n; ++i) write_changes(out, hits[i], group.index);
+        for (int i = 0; i < n; ++i) write_changes(found[i], tree, changes, changed, out);
     }
-    // The same with the changed boxes of a group; those of the same group count from the next on.
-    LENDULET_FORCE_INLINE void with_changed(uint64_t mine, const ChangedGroup& other, PairStream& out) const {
-        ChangedHits hits[group_lanes];
-        int n = 0;
-        while (mine) {
-            int lane = take_lane(mine);
-            uint32_t i = first + static_cast<uint32_t>(lane);
-            uint64_t before =
-                overlaps_of_rows<F>(changes.before, other.first, other.count, spread_row<F>(changes.before, i));
-            uint64_t after =
-                overlaps_of_rows<F>(changes.after, other.first, other.count, spread_row<F>(changes.after, i));
-            uint64_t differ = before ^ after;
-            if (first == other.first) differ &= all_lanes << lane << 1;
-            hits[n] = {after & differ, before & differ, changes.index[i]};
-            n += differ != 0;
-        }
-        for (int i = 0; i < n; ++i) write_changes(out, hits[i], changes.index + other.first);
-    }
-};
-
-// Bounds of all boxes of a range of rows.
-template <class F>
-LENDULET_FORCE_INLINE Spread<F> bounds_of_changes(const WideTreeChanges& changes, uint32_t first, int count) {
-    Bounds6 all{{infinity, infinity, infinity, -infinity, -infinity, -infinity}};
-    for (uint32_t i = first; i < first + static_cast<uint32_t>(count); ++i) {
-        for (int d = 0; d < 3; ++d) {
-            all.at[d] = minimum(minimum(changes.before[d][i], changes.after[d][i]), all.at[d]);
-            all.at[3 + d] = maximum(maximum(changes.before[3 + d][i], changes.after[3 + d][i]), all.at[3 + d]);
-        }
-    }
-    return spread<F>(all);
 }
 
 template <class F>
 void find_changes(const WideTreeView& moving, const WideTreeView& fixed, const WideTreeChanges& changes,
                   const uint32_t* groups, int begin, int end, PairStream& out) {
-    auto changed_of = [&](uint32_t group) {
-        return ChangedGroup<F>{changes, changes.first[group], __builtin_popcountll(changes.changed[group])};
-    };
     for (int i = begin; i < end; ++i) {
-        ChangedGroup<F> mine = changed_of(groups[i]);
-        if (mine.count == 0) continue;
-        Spread<F> reach = bounds_of_changes<F>(changes, mine.first, mine.count);
-        visit_groups<F>(moving, reach, 0, [&](int other) {
-            uint64_t near = mine.near(bounds_in_block<F>(moving, other));
-            if (near == 0) return;
-            uint64_t changed = changes.changed[other];
-            mine.with_unchanged(near, moving.groups[other], ~changed, out);
-            if (changed && static_cast<uint32_t>(other) >= groups[i]) {
-                mine.with_changed(near, changed_of(static_cast<uint32_t>(other)), out);
-            }
-        });
-        visit_groups<F>(fixed, reach, 0, [&](int other) {
-            uint64_t near = mine.near(bounds_in_block<F>(fixed, other));
-            if (near) mine.with_unchanged(near, fixed.groups[other], all_lanes, out);
-        });
+        int group = static_cast<int>(groups[i]);
+        if (changes.changed[group] == 0) continue;
+        const WideTreeChange* change = changes.rows + changes.first[group];
+        Reach all(*change);
+        for (uint64_t left = changes.changed[group]; left; left &= left - 1, ++change) {
+            Reach one(*change);
+            all.lower = minimum(one.lower, all.lower);
+            all.upper = maximum(one.upper, all.upper);
+        }
+        Spread<F> reach = spread<F>(all.lower, all.upper);
+        auto with = [&](const WideTreeView& tree, const uint64_t* changed) {
+            NearGroups<F> near;
+            visit_blocks<F>(tree, reach, 0, [&](int block, uint32_t lanes) {
+                near.add(tree.blocks[tree.first_block[0] + block], lanes, block * block_lanes);
+                if (near.count <= NearGroups<F>::most - block_lanes) return;
+                search_near(near, tree, changes, changed, group, out);
+                near.count = 0;
+            });
+            if (near.count) search_near(near, tree, changes, changed, group, out);
+        };
+        with(moving, changes.changed);
+        with(fixed, nullptr);
     }
 }

@@ -44,15 +44,16 @@ struct Bounds6 {
     float at[bound_count];
 };
 
-// The boxes of the moving set that change between two frames, sorted by their lanes. While they are searched for the
-// groups still hold the boxes of before, and the bounds above hold both.
+struct alignas(64) WideTreeChange {
+    BroadBox before, after;  // of the same index
+};
+
+// The boxes of the moving set that change between two frames, sorted by their lanes. While they are searched, their
+// lanes hold the box around before and after, and so do all bounds above.
 struct WideTreeChanges {
-    static constexpr int padding = 16;  // a vector may be read past the last
-    const uint64_t* changed = nullptr;  // of each group, the lanes that change
-    const uint32_t* first = nullptr;    // of each group with such lanes, where they begin in the arrays
-    const float* before[bound_count] = {};
-    const float* after[bound_count] = {};
-    const uint32_t* index = nullptr;
+    const uint64_t* changed = nullptr;     // of each group, the lanes that change
+    const uint32_t* first = nullptr;       // of each group with such lanes, where its rows begin
+    const WideTreeChange* rows = nullptr;  // in the order of lanes
 };
 
 // Where a query writes the indices of hits: from `next` on there is room for a group's, or `full` has to be called.

@@ -83,9 +83,9 @@ LENDULET_FORCE_INLINE void pairs_between(const BoxGroup& a, const Spread<F>& bou
     for (int i = 0; i < n; ++i) write_pairs(out, hits[i], theirs.index);
 }
 
-// visit(group) for every group from `first` on whose bounds overlap the box, in order.
+// visit(block, lanes) for every block of level 0 with groups from `first` on whose bounds overlap the box, in order.
 template <class F, class Visit>
-LENDULET_FORCE_INLINE void visit_groups(const WideTreeView& tree, const Spread<F>& box, int first, Visit&& visit) {
+LENDULET_FORCE_INLINE void visit_blocks(const WideTreeView& tree, const Spread<F>& box, int first, Visit&& visit) {
     if (first >= tree.group_count) return;
     struct Entry {
         int level, block;
@@ -98,7 +98,7 @@ LENDULET_FORCE_INLINE void visit_groups(const WideTreeView& tree, const Spread<F
         int skip = (first >> 4 * level) - block * block_lanes;  // children that end before the first group
         if (skip > 0) lanes &= ~0u << skip;
         if (level == 0) {
-            for (; lanes; lanes &= lanes - 1) visit(block * block_lanes + __builtin_ctz(lanes));
+            if (lanes) visit(block, lanes);
             continue;
         }
         while (lanes) {  // the last child first, so that the first comes off the stack first
@@ -107,6 +107,14 @@ LENDULET_FORCE_INLINE void visit_groups(const WideTreeView& tree, const Spread<F
             stack[top++] = {level - 1, block * block_lanes + k};
         }
     }
+}
+
+// visit(group) for each of those groups.
+template <class F, class Visit>
+LENDULET_FORCE_INLINE void visit_groups(const WideTreeView& tree, const Spread<F>& box, int first, Visit&& visit) {
+    visit_blocks<F>(tree, box, first, [&](int block, uint32_t lanes) {
+        for (; lanes; lanes &= lanes - 1) visit(block * block_lanes + __builtin_ctz(lanes));
+    });
 }
 
 template <class F>

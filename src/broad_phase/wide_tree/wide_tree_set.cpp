@@ -22,8 +22,7 @@ int blocks_for(int children) { return (children + block_lanes - 1) / block_lanes
 WideTreeSet::WideTreeSet(const Memory* memory, const WideTreeKernels& kernels) : kernels_(kernels), order_(memory) {
     auto give = [&](auto&... arrays) { (arrays.set_memory(memory), ...); };
     give(groups_, blocks_, place_, unbounded_, unbounded_place_, lane_of_, home_, size_, changed_, is_touched_);
-    give(touched_, parents_, first_change_, changed_lane_, changed_index_);
-    for (int k = 0; k < bound_count; ++k) give(before_[k], after_[k]);
+    give(touched_, parents_, first_row_, rows_, row_lane_);
 }
 
 WideTreeView WideTreeSet::view() const {
@@ -162,8 +161,7 @@ size_t WideTreeSet::bytes() const {
     size_t sum = order_.bytes();
     auto add = [&](const auto&... arrays) { ((sum += arrays.bytes()), ...); };
     add(groups_, blocks_, place_, unbounded_, unbounded_place_, lane_of_, home_, size_, changed_, is_touched_);
-    add(touched_, parents_, first_change_, changed_lane_, changed_index_);
-    for (int k = 0; k < bound_count; ++k) add(before_[k], after_[k]);
+    add(touched_, parents_, first_row_, rows_, row_lane_);
     return sum;
 }
 

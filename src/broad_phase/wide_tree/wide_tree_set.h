@@ -46,7 +46,7 @@ public:
     void widen();
     WideTreeChanges changes() const;
     const Array<uint32_t>& changed_groups() const { return touched_; }
-    int changed_count() const { return changed_index_.count() - WideTreeChanges::padding; }
+    int changed_count() const { return rows_.count(); }
     // 6. Puts the boxes of after in the place of those of before. The set then has `count` boxes; those removed or new
     // are to be inserted.
     void settle(int count);
@@ -66,7 +66,7 @@ private:
     void raise_touched();
     void touch(uint32_t group);
     void sort_touched();
-    void gather_group(const BroadBox* boxes, uint32_t group, Array<uint32_t>& jumped);
+    void extend_bounds(int level, uint32_t child, const BroadBox& box);
     void add_group();
     void clear_lane(uint32_t lane);
 
@@ -94,9 +94,10 @@ private:
     Array<uint64_t> changed_;  // of each group, the lanes that change: all zero between frames
     Array<uint8_t> is_touched_;
     Array<uint32_t> touched_, parents_;  // groups with a changed or removed box
-    Array<uint32_t> first_change_;       // of each touched group
-    Array<uint32_t> changed_lane_, changed_index_;
-    Array<float> before_[bound_count], after_[bound_count];
+    Array<uint32_t> first_row_;          // of each touched group
+    Array<WideTreeChange> rows_;
+    Array<uint32_t> row_lane_;
+    int marks_ = 0;
 };
 
 }  // namespace lendulet

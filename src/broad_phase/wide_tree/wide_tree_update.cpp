@@ -81,13 +81,9 @@ void WideTree::find_changes(TaskPool& tasks) {
     for (const WideTreeSet* set : {&moving_, &fixed_}) {
         for (const BroadBox& box : set->unbounded()) {
             for (int i = 0; i < moving_.changed_count(); ++i) {
-                float lower[2][3], upper[2][3];
-                for (int d = 0; d < 3; ++d) {
-                    lower[0][d] = changes.before[d][i], upper[0][d] = changes.before[3 + d][i];
-                    lower[1][d] = changes.after[d][i], upper[1][d] = changes.after[3 + d][i];
-                }
-                bool was = overlap(box, lower[0], upper[0]), is = overlap(box, lower[1], upper[1]);
-                if (was != is) note(box.index, changes.index[i], is);
+                const auto& [before, after] = changes.rows[i];
+                bool was = overlap(box, before.lower, before.upper), is = overlap(box, after.lower, after.upper);
+                if (was != is) note(box.index, after.index, is);
             }
         }
     }
