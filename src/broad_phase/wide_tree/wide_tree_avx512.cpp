@@ -1,4 +1,5 @@
-// The inner loops of the wide tree, 16 lanes, for machines with AVX-512; compiled with that instruction set, see src/CMakeLists.txt.
+// The inner loops of the wide tree, 16 lanes, for machines with AVX-512; compiled with that instruction set, see
+// src/CMakeLists.txt.
 #if defined(__AVX512F__)
 #define LENDULET_KERNEL_SPACE wide_tree_avx512
 #include "broad_phase/wide_tree/wide_tree_kernels.inl"

@@ -67,7 +67,8 @@ void WideTreeSet::begin_changes() {
     mapped_ = true;
     lane_of_.resize_unset(static_cast<size_t>(count_));
     for (size_t i = 0; i < place_.size(); ++i) lane_of_[place_[i]] = static_cast<uint32_t>(i);
-    for (size_t i = 0; i < unbounded_place_.size(); ++i) lane_of_[unbounded_place_[i]] = beside | static_cast<uint32_t>(i);
+    for (size_t i = 0; i < unbounded_place_.size(); ++i)
+        lane_of_[unbounded_place_[i]] = beside | static_cast<uint32_t>(i);
     built_groups_ = groups_.count();
     loose_used_ = group_lanes;
     wear_ = 0;

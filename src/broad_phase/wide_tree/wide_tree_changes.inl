@@ -1,6 +1,6 @@
-// Part of wide_tree_kernels.inl: pairs that begin and end. Which do follows from the boxes of before and after alone, so
-// no list of pairs is kept. While the changes are searched, the lane of a changed box holds the box around both; what
-// meets it there is a candidate, which is then looked at as it was and as it is.
+// Part of wide_tree_kernels.inl: pairs that begin and end. Which do follows from the boxes of before and after alone,
+// so no list of pairs is kept. While the changes are searched, the lane of a changed box holds the box around both;
+// what meets it there is a candidate, which is then looked at as it was and as it is.
 
 using Quad = Wide<float, 4>;
 

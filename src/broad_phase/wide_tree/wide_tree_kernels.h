@@ -12,8 +12,8 @@
 namespace lendulet {
 
 inline constexpr int group_lanes = 64;  // boxes, the bits of a word
-inline constexpr int block_lanes = 16;     // groups or blocks, the lanes of the widest vector
-inline constexpr int bound_count = 6;  // lower x, y, z, upper x, y, z
+inline constexpr int block_lanes = 16;  // groups or blocks, the lanes of the widest vector
+inline constexpr int bound_count = 6;   // lower x, y, z, upper x, y, z
 
 // A leaf: 64 boxes side by side. Lanes without a box have lower = +infinity and upper = -infinity: nothing finite
 // overlaps them, and they leave all bounds alone.

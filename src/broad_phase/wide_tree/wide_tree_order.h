@@ -4,7 +4,8 @@
 // Slabs and strips are run through to and fro, so that a group that reaches from one into the next is no longer than
 // others.
 //
-// Boxes far larger than the others come last, so that they widen few groups. Boxes with infinite sides are listed apart.
+// Boxes far larger than the others come last, so that they widen few groups. Boxes with infinite sides are listed
+// apart.
 #pragma once
 
 #include "base/memory.h"

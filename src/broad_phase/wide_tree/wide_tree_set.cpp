@@ -109,10 +109,14 @@ void WideTreeSet::boxes(Array<BroadPhaseBox>& out) const {
     for (const BroadBox& b : unbounded_) {
         append({{b.lower[0], b.lower[1], b.lower[2], b.upper[0], b.upper[1], b.upper[2]}}, 0, true, b.index);
     }
+    if (levels_ == 0) return;
+    Bounds6 root;
+    kernels_.block_bounds(blocks_[first_block_[levels_ - 1]], root);
+    append(root, 0, false, no_box);
     for (int level = levels_ - 1; level >= 0; --level) {
         int children = level ? blocks_at_[level - 1] : groups_.count();
         for (int i = 0; i < children; ++i) {
-            append(bounds_at(level, static_cast<uint32_t>(i)), levels_ - 1 - level, false, no_box);
+            append(bounds_at(level, static_cast<uint32_t>(i)), levels_ - level, false, no_box);
         }
     }
     for (size_t lane = 0; lane < place_.size(); ++lane) {
@@ -120,7 +124,7 @@ void WideTreeSet::boxes(Array<BroadPhaseBox>& out) const {
         const BoxGroup& group = groups_[lane / group_lanes];
         Bounds6 b;
         for (int k = 0; k < bound_count; ++k) b.at[k] = group.bounds[k][lane % group_lanes];
-        append(b, levels_, true, group.index[lane % group_lanes]);
+        append(b, levels_ + 1, true, group.index[lane % group_lanes]);
     }
 }
 

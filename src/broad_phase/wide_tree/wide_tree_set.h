@@ -1,8 +1,8 @@
 // One set of boxes of the wide tree: its groups, the bounds above them and the boxes with infinite sides beside them.
 //
 // Between frames a box keeps its lane while it stays near where its group was built; one that jumps farther, or is new,
-// goes into a loose group at the end, whatever its place in space. Loose groups meet more queries than others, and groups
-// grow as their boxes drift apart: worn() tells when what that costs has paid for building the set anew.
+// goes into a loose group at the end, whatever its place in space. Loose groups meet more queries than others, and
+// groups grow as their boxes drift apart: worn() tells when what that costs has paid for building the set anew.
 #pragma once
 
 #include "base/memory.h"
@@ -52,7 +52,8 @@ public:
     void settle(int count);
     // 7. Puts a box in.
     void insert(uint32_t place, const BroadBox& box);
-    // True where a build now saves more than it costs, as far as can be told from the work of the changes since the last.
+    // True where a build now saves more than it costs, as far as can be told from the work of the changes since the
+    // last.
     bool worn(int queries);
     int loose_lanes() const { return (groups_.count() - built_groups_ - 1) * group_lanes + loose_used_; }
 
@@ -86,7 +87,7 @@ private:
     Array<Bounds6> home_;      // of each group, what its boxes stay in
     Array<float> size_;        // of each group, the sum of its edge lengths
     double size_sum_ = 0, built_size_ = 0;
-    int built_groups_ = 0;  // the others are loose
+    int built_groups_ = 0;          // the others are loose
     int loose_used_ = group_lanes;  // lanes of the last loose group
     int64_t wear_ = 0;
 
