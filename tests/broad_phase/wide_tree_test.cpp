@@ -271,7 +271,7 @@ TEST(WideTreeTest, StraysAndHugeBoxesSpoilOnlyTheirOwnGroups) {
     EXPECT_LT(size_of_groups(strays, 3), 1.3f * usual);
     Boxes huge = boxes;
     for (size_t i = 0; i < 40; ++i) huge[100 * i] = box_around({8, 8, 8}, {500, 1, 500}, huge[100 * i].index);
-    EXPECT_LT(size_of_groups(huge, 1), 1.3f * usual);
+    EXPECT_LT(size_of_groups(huge, 2), 1.3f * usual);  // forty boxes, in two groups at most
 }
 
 TEST(WideTreeTest, SwarmsFarApartAreResolved) {
@@ -283,8 +283,9 @@ TEST(WideTreeTest, SwarmsFarApartAreResolved) {
             far[i].upper[d] += by;
         }
     }
-    // Half as dense, so a group is 2^(1/3) as long.
-    EXPECT_LT(size_of_groups(far, 1), 1.6f * size_of_groups(near, 0));
+    // Half as dense, so a group is 2^(1/3) as long; a few groups, however many boxes there are, reach from one swarm to
+    // the other where the order of slabs and strips goes across.
+    EXPECT_LT(size_of_groups(far, 5), 1.6f * size_of_groups(near, 0));
 }
 
 }  // namespace
