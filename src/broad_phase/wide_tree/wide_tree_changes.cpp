@@ -12,7 +12,7 @@ namespace {
 constexpr float all_space = FLT_MAX;
 
 // A box may leave the bounds its group was built with by this share of their longest edge before it counts as one that
-// jumps. Groups can then at most double their edges; measured, a quarter more or less shows in no scene.
+// jumps. Groups can then at most double their edges.
 constexpr float leeway = 0.5f;
 
 bool bounded(const BroadBox& box) {
