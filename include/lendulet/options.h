@@ -9,7 +9,16 @@
 namespace lendulet {
 
 // The structure that finds pairs of overlapping boxes.
-enum class BroadPhaseType : uint8_t { all_pairs, sweep_1, sweep_3, rtree_quadratic, rtree_star, rtree_str, rtree_omt };
+enum class BroadPhaseType : uint8_t {
+    all_pairs,
+    sweep_1,
+    sweep_3,
+    rtree_quadratic,
+    rtree_star,
+    rtree_str,
+    rtree_omt,
+    wide_tree,  // named "default"
+};
 // The sub-algorithm of GJK that finds the closest point of a simplex (thesis 4.1).
 enum class SimplexSolver : uint8_t { barycentric, half_space };
 // How free rotation and translation are integrated. `momentum` (default) keeps L exactly, turns by the implicit

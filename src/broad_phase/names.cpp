@@ -9,7 +9,7 @@ namespace lendulet {
 
 namespace {
 
-constexpr std::array<std::pair<BroadPhaseType, std::string_view>, 7> names{{
+constexpr std::array<std::pair<BroadPhaseType, std::string_view>, 8> names{{
     {BroadPhaseType::all_pairs, "all-pairs"},
     {BroadPhaseType::sweep_1, "sweep-1"},
     {BroadPhaseType::sweep_3, "sweep-3"},
@@ -17,6 +17,7 @@ constexpr std::array<std::pair<BroadPhaseType, std::string_view>, 7> names{{
     {BroadPhaseType::rtree_star, "rtree-star"},
     {BroadPhaseType::rtree_str, "rtree-str"},
     {BroadPhaseType::rtree_omt, "rtree-omt"},
+    {BroadPhaseType::wide_tree, "default"},
 }};
 
 }  // namespace

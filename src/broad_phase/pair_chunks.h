@@ -23,6 +23,7 @@ public:
 
 private:
     friend class PairWriter;
+    friend class PairRoom;
     Array<BoxPair>& pairs_;
     bool may_grow_;
     size_t missing_ = 0;
@@ -56,6 +57,48 @@ public:
 private:
     PairList& list_;
     BoxPair *begin_, *next_;
+};
+
+// Where a kernel writes pairs without knowing of lists: from `next` on there is room for most_at_once pairs, or `full`
+// has to be called before they are written. Plain data: kernels are compiled for several instruction sets.
+struct PairStream {
+    BoxPair *next, *end;
+    void (*full)(PairStream&);
+};
+
+// The stream of a list.
+class PairRoom : public PairStream {
+public:
+    explicit PairRoom(PairList& list) : list_(list) {
+        full = [](PairStream& stream) {
+            static_cast<PairRoom&>(stream).take_over();
+            static_cast<PairRoom&>(stream).open();
+        };
+        open();
+    }
+    ~PairRoom() { take_over(); }
+    PairRoom(const PairRoom&) = delete;
+    PairRoom& operator=(const PairRoom&) = delete;
+
+private:
+    void open() {
+        Array<BoxPair>& pairs = list_.pairs_;
+        bool room = pairs.capacity() - pairs.size() >= PairList::most_at_once;
+        if (!room && list_.may_grow_) {
+            pairs.reserve(pairs.size() + PairList::most_at_once);
+            room = true;
+        }
+        begin_ = next = room ? pairs.data() + pairs.size() : list_.overflow_;
+        end = room ? pairs.data() + pairs.capacity() : list_.overflow_ + PairList::most_at_once;
+    }
+    void take_over() {
+        size_t written = static_cast<size_t>(next - begin_);
+        if (begin_ == list_.overflow_) list_.missing_ += written;
+        else list_.pairs_.resize_unset(list_.pairs_.size() + written);
+    }
+
+    PairList& list_;
+    BoxPair* begin_;
 };
 
 class PairChunks {

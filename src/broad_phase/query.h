@@ -22,7 +22,7 @@ struct BoxCast {
           translation{along[0], along[1], along[2]},
           best_t(max_t < FLT_MAX ? max_t : FLT_MAX) {}
 
-    void offer(float t, uint32_t index) {
+    LENDULET_FORCE_INLINE void offer(float t, uint32_t index) {
         if (t < best_t || (t == best_t && index < best_index)) {
             best_t = t;
             best_index = index;
@@ -64,7 +64,7 @@ struct NearestBox {
         best_squared = max_distance < 0 ? -1.0f : squared < FLT_MAX ? squared : FLT_MAX;
     }
 
-    void offer(float squared, uint32_t index) {
+    LENDULET_FORCE_INLINE void offer(float squared, uint32_t index) {
         if (squared < best_squared || (squared == best_squared && index < best_index)) {
             best_squared = squared;
             best_index = index;
@@ -85,10 +85,10 @@ LENDULET_FORCE_INLINE F squared_distance(const NearestBox& nearest, const F lowe
     return sum;
 }
 
-inline float measure(const BoxCast& cast, const float lower[3], const float upper[3]) {
+LENDULET_FORCE_INLINE float measure(const BoxCast& cast, const float lower[3], const float upper[3]) {
     return cast_entry<float>(cast, lower, upper);
 }
-inline float measure(const NearestBox& nearest, const float lower[3], const float upper[3]) {
+LENDULET_FORCE_INLINE float measure(const NearestBox& nearest, const float lower[3], const float upper[3]) {
     return squared_distance<float>(nearest, lower, upper);
 }
 inline Float4 measure_wide(const BoxCast& cast, const Float4 lower[3], const Float4 upper[3]) {
@@ -97,8 +97,8 @@ inline Float4 measure_wide(const BoxCast& cast, const Float4 lower[3], const Flo
 inline Float4 measure_wide(const NearestBox& nearest, const Float4 lower[3], const Float4 upper[3]) {
     return squared_distance<Float4>(nearest, lower, upper);
 }
-inline float limit(const BoxCast& cast) { return cast.best_t; }
-inline float limit(const NearestBox& nearest) { return nearest.best_squared; }
+LENDULET_FORCE_INLINE float limit(const BoxCast& cast) { return cast.best_t; }
+LENDULET_FORCE_INLINE float limit(const NearestBox& nearest) { return nearest.best_squared; }
 
 // The measure of a query (when it enters, how far it is) for the eight boxes of a block; smaller is better, and a box
 // whose measure is above limit(query) is no hit.

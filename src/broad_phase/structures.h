@@ -15,9 +15,11 @@
 #include "broad_phase/rtree/two_trees.h"
 #include "broad_phase/sweep/sweep_1.h"
 #include "broad_phase/sweep/sweep_3.h"
+#include "broad_phase/wide_tree/wide_tree.h"
 
 namespace lendulet {
 
-using BroadPhaseStructure = std::variant<AllPairs, Sweep1, Sweep3, RtreeQuadratic, RtreeStar, RtreeStr, RtreeOmt>;
+using BroadPhaseStructure =
+    std::variant<AllPairs, Sweep1, Sweep3, RtreeQuadratic, RtreeStar, RtreeStr, RtreeOmt, WideTree>;
 
 }  // namespace lendulet

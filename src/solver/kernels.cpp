@@ -1,24 +1,19 @@
 #include "solver/kernels.h"
 
+#include "math/wide/cpu.h"
+
 namespace lendulet {
 
 extern const SolverKernels baseline_kernels_1, baseline_kernels_4, baseline_kernels_8, baseline_kernels_16;
 
 #if defined(__x86_64__)
 extern const SolverKernels avx2_kernels, avx512_kernels;
-namespace {
-bool has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"); }
-bool has_avx512() {
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl");
-}
-}  // namespace
 
-int native_width() { return has_avx512() ? 16 : has_avx2() ? 8 : 4; }
+int native_width() { return cpu_has_avx512() ? 16 : cpu_has_avx2() ? 8 : 4; }
 
 const SolverKernels& solver_kernels(int width) {
-    if (width == 16) return has_avx512() ? avx512_kernels : baseline_kernels_16;
-    if (width == 8) return has_avx2() ? avx2_kernels : baseline_kernels_8;
+    if (width == 16) return cpu_has_avx512() ? avx512_kernels : baseline_kernels_16;
+    if (width == 8) return cpu_has_avx2() ? avx2_kernels : baseline_kernels_8;
     return width == 4 ? baseline_kernels_4 : baseline_kernels_1;
 }
 #else

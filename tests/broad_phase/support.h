@@ -16,8 +16,8 @@ namespace lendulet::broad_phase_test {
 
 inline constexpr float inf = std::numeric_limits<float>::infinity();
 inline constexpr BroadPhaseType all_types[] = {
-    BroadPhaseType::all_pairs,  BroadPhaseType::sweep_1,   BroadPhaseType::sweep_3,  BroadPhaseType::rtree_quadratic,
-    BroadPhaseType::rtree_star, BroadPhaseType::rtree_str, BroadPhaseType::rtree_omt};
+    BroadPhaseType::all_pairs,  BroadPhaseType::sweep_1,   BroadPhaseType::sweep_3,   BroadPhaseType::rtree_quadratic,
+    BroadPhaseType::rtree_star, BroadPhaseType::rtree_str, BroadPhaseType::rtree_omt, BroadPhaseType::wide_tree};
 
 using Boxes = std::vector<BroadBox>;
 using Pairs = std::vector<std::pair<uint32_t, uint32_t>>;

@@ -1,0 +1,75 @@
+// Part of wide_tree_kernels.inl: queries.
+
+template <class F>
+void find_overlapping(const WideTreeView& tree, const Bounds6& bounds, IndexStream& out) {
+    Spread<F> box = spread<F>(bounds);
+    visit_groups<F>(tree, box, 0, [&](int g) {
+        const BoxGroup& group = tree.groups[g];
+        uint64_t lanes = overlaps<F>(group, 0, group_lanes, box);
+        if (out.end - out.next < group_lanes) out.full(out);
+        uint32_t* next = out.next;
+        while (lanes) *next++ = group.index[take_lane(lanes)];
+        out.next = next;
+    });
+}
+
+// The measure of a query for boxes side by side: when a cast enters them, how far off they are.
+template <class F, class Query>
+LENDULET_FORCE_INLINE F measure_lanes(const Query& query, const float* bounds, int stride) {
+    F lower[3], upper[3];
+    for (int d = 0; d < 3; ++d) {
+        lower[d] = load_wide<F>(bounds + d * stride);
+        upper[d] = load_wide<F>(bounds + (3 + d) * stride);
+    }
+    if constexpr (std::is_same_v<Query, BoxCast>) return cast_entry<F>(query, lower, upper);
+    else return squared_distance<F>(query, lower, upper);
+}
+
+template <class F, class Query>
+LENDULET_FORCE_INLINE void offer_group(Query& query, const BoxGroup& group) {
+    for (int i = 0; i < group_lanes; i += lanes_of<F>) {
+        F at = measure_lanes<F>(query, group.bounds[0] + i, group_lanes);
+        uint32_t lanes = lane_bits<F>(at_most(at, splat<F>(limit(query))));
+        if (lanes == 0) continue;
+        float each[lanes_of<F>];
+        store_wide(each, at);
+        for (; lanes; lanes &= lanes - 1) {
+            int lane = __builtin_ctz(lanes);
+            query.offer(each[lane], group.index[i + lane]);
+        }
+    }
+}
+
+// The children of a block that may hold something better are pushed with their measures, the best last.
+template <class F, class Query>
+void find_best(const WideTreeView& tree, Query& query) {
+    struct Entry {
+        float at;
+        int level, child;
+    };
+    if (tree.group_count == 0) return;
+    Entry stack[WideTreeView::max_levels * block_lanes];
+    stack[0] = {0, tree.levels, 0};
+    for (int top = 1; top > 0;) {
+        Entry entry = stack[--top];
+        if (entry.at > limit(query)) continue;  // at equal measure there may be a smaller index
+        if (entry.level == 0) {
+            offer_group<F>(query, tree.groups[entry.child]);
+            continue;
+        }
+        int level = entry.level - 1, bottom = top;
+        const BoundsBlock& block = tree.blocks[tree.first_block[level] + entry.child];
+        float each[block_lanes];
+        uint32_t lanes = 0;
+        for (int i = 0; i < block_lanes; i += lanes_of<F>) {
+            F at = measure_lanes<F>(query, block.bounds[0] + i, block_lanes);
+            store_wide(each + i, at);
+            lanes |= lane_bits<F>(at_most(at, splat<F>(limit(query)))) << i;
+        }
+        for (; lanes; lanes &= lanes - 1) {
+            int k = __builtin_ctz(lanes), place = top++;
+            for (; place > bottom && stack[place - 1].at < each[k]; --place) stack[place] = stack[place - 1];
+            stack[place] = {each[k], level, entry.child * block_lanes + k};
+        }
+    }
+}

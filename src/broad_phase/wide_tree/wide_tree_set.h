@@ -1,0 +1,104 @@
+// One set of boxes of the wide tree: its groups, the bounds above them and the boxes with infinite sides beside them.
+//
+// Between frames a box keeps its lane while it stays near where its group was built; one that jumps farther, or is new,
+// goes into a loose group at the end, whatever its place in space. Loose groups meet more queries than others, and
+// groups grow as their boxes drift apart: worn() tells when what that costs has paid for building the set anew.
+#pragma once
+
+#include "base/memory.h"
+#include "base/tasks.h"
+#include "broad_phase/box.h"
+#include "broad_phase/wide_tree/wide_tree_kernels.h"
+#include "broad_phase/wide_tree/wide_tree_order.h"
+
+namespace lendulet {
+
+class WideTreeSet {
+public:
+    WideTreeSet(const Memory* memory, const WideTreeKernels& kernels);
+
+    // Replaces all boxes. `tasks` may be null; it never changes the result.
+    void build(const BroadBox* boxes, int count, TaskPool* tasks);
+    WideTreeView view() const;
+    const Array<BroadBox>& unbounded() const { return unbounded_; }
+    int count() const { return count_; }
+    size_t bytes() const;
+    void boxes(Array<BroadPhaseBox>& out) const;
+    // Empty, or a sentence about the first thing that is wrong inside.
+    const char* check() const;
+
+    // Changes, in this order. "Place": in the caller's array, of the boxes of the last frame.
+    // 1. Before all others.
+    void begin_changes();
+    BroadBox box_at(uint32_t place) const;
+    uint32_t index_at(uint32_t place) const;
+    // The lane of one place becomes the other's and the other way round.
+    void swap_places(uint32_t a, uint32_t b);
+    // 2. Marks a bounded box that changes. False where it is unbounded: remove and insert it.
+    bool mark(uint32_t place);
+    // 3. Collects the marked boxes before and after, `boxes` being the new array. Appends the places of those that jump
+    // or become another box to `jumped`: they are no longer marked, but to be removed and inserted.
+    void gather(const BroadBox* boxes, Array<uint32_t>& jumped);
+    // 4. Takes a box out.
+    void remove(uint32_t place);
+    // 5. Makes the bounds above the marked groups hold the boxes of before and after. From here to 6 the changes can be
+    // searched: those of changed_groups().
+    void widen();
+    WideTreeChanges changes() const;
+    const Array<uint32_t>& changed_groups() const { return touched_; }
+    int changed_count() const { return rows_.count(); }
+    // 6. Puts the boxes of after in the place of those of before. The set then has `count` boxes; those removed or new
+    // are to be inserted.
+    void settle(int count);
+    // 7. Puts a box in.
+    void insert(uint32_t place, const BroadBox& box);
+    // True where a build now saves more than it costs, as far as can be told from the work of the changes since the
+    // last.
+    bool worn(int queries);
+    int loose_lanes() const { return (groups_.count() - built_groups_ - 1) * group_lanes + loose_used_; }
+
+private:
+    static constexpr uint32_t beside = 1u << 31;  // in lane_of_: the rest counts in the list of unbounded boxes
+
+    void plan_levels(int first_cleared);
+    void set_bounds(int level, uint32_t child, const Bounds6& bounds);
+    Bounds6 bounds_at(int level, uint32_t child) const;
+    void raise_bounds();
+    void raise_touched();
+    void touch(uint32_t group);
+    void sort_touched();
+    void extend_bounds(int level, uint32_t child, const BroadBox& box);
+    void add_group();
+    void clear_lane(uint32_t lane);
+
+    const WideTreeKernels& kernels_;
+    int levels_ = 0, count_ = 0;
+    int first_block_[WideTreeView::max_levels] = {}, blocks_at_[WideTreeView::max_levels] = {};
+    Array<BoxGroup> groups_;
+    Array<BoundsBlock> blocks_;  // level 0 first
+    Array<uint32_t> place_;      // of the box in each lane, its place in the caller's array; no_box: none
+    Array<BroadBox> unbounded_;
+    Array<uint32_t> unbounded_place_;
+    WideTreeOrder order_;
+
+    // What changes need; made by the first after a build.
+    bool mapped_ = false;
+    Array<uint32_t> lane_of_;  // of each place
+    Array<Bounds6> home_;      // of each group, what its boxes stay in
+    Array<float> size_;        // of each group, the sum of its edge lengths
+    double size_sum_ = 0, built_size_ = 0;
+    int built_groups_ = 0;          // the others are loose
+    int loose_used_ = group_lanes;  // lanes of the last loose group
+    int64_t wear_ = 0;
+
+    // The changes of one frame.
+    Array<uint64_t> changed_;  // of each group, the lanes that change: all zero between frames
+    Array<uint8_t> is_touched_;
+    Array<uint32_t> touched_, parents_;  // groups with a changed or removed box
+    Array<uint32_t> first_row_;          // of each touched group
+    Array<WideTreeChange> rows_;
+    Array<uint32_t> row_lane_;
+    int marks_ = 0;
+};
+
+}  // namespace lendulet

@@ -1,0 +1,141 @@
+// The wide tree between frames. What changes goes three ways:
+// - boxes that moved a little are searched group by group with their boxes of before and after, and keep their lanes;
+// - single boxes that jumped, came or went are taken out of the old state and put into the new one, each with a query;
+// - if most did, all pairs of the old and of a newly built tree are compared.
+#include <algorithm>
+
+#include "broad_phase/sort.h"
+#include "broad_phase/wide_tree/wide_tree.h"
+
+namespace lendulet {
+
+namespace {
+
+uint64_t key_of(const BoxPair& pair) { return uint64_t{pair.a} << 32 | pair.b; }
+
+// Appends what stands in one sorted list and not in the other; each key is in a list once.
+void append_missing(const Array<uint64_t>& from, const Array<uint64_t>& in, Array<BoxPair>& out) {
+    size_t next = 0;
+    for (uint64_t key : from) {
+        while (next < in.size() && in[next] < key) ++next;
+        if (next < in.size() && in[next] == key) continue;
+        out.push_back({static_cast<uint32_t>(key >> 32), static_cast<uint32_t>(key)});
+    }
+}
+
+}  // namespace
+
+void WideTree::update(TaskPool& tasks, const BroadBox* boxes, int count, const uint32_t* changed, int changed_count,
+                      Array<BoxPair>& begun, Array<BoxPair>& ended) {
+    moving_.begin_changes();
+    const int before = moving_.count(), common = std::min(before, count);
+    if (count < before) adopt_removed(boxes, count, changed, changed_count);
+    special_.clear();
+    for (int i = 0; i < changed_count && changed[i] < static_cast<uint32_t>(common); ++i) {
+        if (!moving_.mark(changed[i])) special_.push_back(changed[i]);
+    }
+    moving_.gather(boxes, special_);
+    const int singles = special_.count() + (before - common) + (count - common);
+    // Two queries of a single box (about 160 ns each) cost as much as eight boxes in two searches and a build.
+    if (int64_t{singles} * 8 > count + int64_t{256}) return replace(tasks, boxes, count, begun, ended);
+
+    changes_.clear();
+    for (uint32_t place : special_) take_out(place);
+    for (int place = common; place < before; ++place) take_out(static_cast<uint32_t>(place));
+    moving_.widen();
+    find_changes(tasks);
+    const int queries = moving_.changed_groups().count() + 2 * singles;
+    moving_.settle(count);
+    for (uint32_t place : special_) put_in(place, boxes[place]);
+    for (int place = common; place < count; ++place) put_in(static_cast<uint32_t>(place), boxes[place]);
+    sort_changes(begun, ended, singles > 0);
+    if (moving_.worn(queries)) set_moving(boxes, count, &tasks);
+}
+
+// Where a caller fills the hole of a removed box with his last one, that box keeps its lane.
+void WideTree::adopt_removed(const BroadBox* boxes, int count, const uint32_t* changed, int changed_count) {
+    removed_.clear();
+    for (int place = count; place < moving_.count(); ++place) {
+        uint32_t p = static_cast<uint32_t>(place);
+        removed_.push_back(uint64_t{moving_.index_at(p)} << 32 | p);
+    }
+    sort_keys(removed_, swap_);
+    for (int i = 0; i < changed_count && changed[i] < static_cast<uint32_t>(count); ++i) {
+        uint32_t index = boxes[changed[i]].index;
+        if (index == moving_.index_at(changed[i])) continue;
+        const uint64_t* found = std::lower_bound(removed_.begin(), removed_.end(), uint64_t{index} << 32);
+        if (found == removed_.end() || *found >> 32 != index) continue;
+        moving_.swap_places(changed[i], static_cast<uint32_t>(*found));
+    }
+}
+
+void WideTree::find_changes(TaskPool& tasks) {
+    constexpr int grain = 8;  // groups
+    const WideTreeView moving = moving_.view(), fixed = fixed_.view();
+    const WideTreeChanges changes = moving_.changes();
+    const Array<uint32_t>& groups = moving_.changed_groups();
+    chunks_.search(tasks, groups.count(), grain, changes_, [&](int begin, int end, PairList& list) {
+        PairRoom room(list);
+        kernels_.find_changes(moving, fixed, changes, groups.data(), begin, end, room);
+    });
+    for (const WideTreeSet* set : {&moving_, &fixed_}) {
+        for (const BroadBox& box : set->unbounded()) {
+            for (int i = 0; i < moving_.changed_count(); ++i) {
+                const auto& [before, after] = changes.rows[i];
+                bool was = overlap(box, before.lower, before.upper), is = overlap(box, after.lower, after.upper);
+                if (was != is) note(box.index, after.index, is);
+            }
+        }
+    }
+}
+
+// Begun pairs are noted with a < b, ended ones with a > b, as the kernels do.
+void WideTree::note(uint32_t a, uint32_t b, bool begins) {
+    changes_.push_back((a < b) == begins ? BoxPair{a, b} : BoxPair{b, a});
+}
+
+void WideTree::take_out(uint32_t place) {
+    const BroadBox box = moving_.box_at(place);
+    moving_.remove(place);
+    visit_overlapping(box.lower, box.upper, [&](uint32_t other) { note(box.index, other, false); });
+}
+
+void WideTree::put_in(uint32_t place, const BroadBox& box) {
+    visit_overlapping(box.lower, box.upper, [&](uint32_t other) { note(box.index, other, true); });
+    moving_.insert(place, box);
+}
+
+void WideTree::replace(TaskPool& tasks, const BroadBox* boxes, int count, Array<BoxPair>& begun,
+                       Array<BoxPair>& ended) {
+    auto all_pairs = [&](Array<uint64_t>& keys) {
+        changes_.clear();
+        find_pairs(tasks, changes_);
+        keys.clear();
+        for (const BoxPair& pair : changes_) keys.push_back(key_of(pair));
+        sort_keys(keys, swap_);
+    };
+    all_pairs(ended_);
+    set_moving(boxes, count, &tasks);
+    all_pairs(begun_);
+    append_missing(begun_, ended_, begun);
+    append_missing(ended_, begun_, ended);
+}
+
+// A single box that was taken out and put in again may have ended pairs and begun them anew: those cancel.
+void WideTree::sort_changes(Array<BoxPair>& begun, Array<BoxPair>& ended, bool cancel) {
+    begun_.clear();
+    ended_.clear();
+    begun_.reserve(changes_.size());
+    ended_.reserve(changes_.size());
+    for (const BoxPair& pair : changes_) {
+        if (pair.a < pair.b) begun_.push_back(key_of(pair));
+        else ended_.push_back(key_of({pair.b, pair.a}));
+    }
+    sort_keys(begun_, swap_);
+    sort_keys(ended_, swap_);
+    if (!cancel) removed_.clear();
+    append_missing(begun_, cancel ? ended_ : removed_, begun);
+    append_missing(ended_, cancel ? begun_ : removed_, ended);
+}
+
+}  // namespace lendulet

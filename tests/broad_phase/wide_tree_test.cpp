@@ -1,0 +1,291 @@
+// What is particular to the wide tree: vectors of any width and any number of workers write the same lists, boxes keep
+// their lanes while they move a little, and what jumps, comes or goes wears the tree until it is built anew.
+#include "broad_phase/wide_tree/wide_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "broad_phase/support.h"
+
+using namespace lendulet;
+using namespace lendulet::broad_phase_test;
+
+namespace {
+
+constexpr int widths[] = {4, 8, 16};
+
+Pairs all_pairs(WideTree& tree, TaskPool& tasks) {
+    Array<BoxPair> out;
+    tree.find_pairs(tasks, out);
+    return as_written(out);
+}
+
+Pairs sorted(Pairs pairs) {
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+void move_by(BroadBox& box, Random& random, float most) {
+    for (int d = 0; d < 3; ++d) {
+        float by = random.uniform(-most, most);
+        box.lower[d] += by;
+        box.upper[d] += by;
+    }
+}
+
+struct Lists {
+    Pairs begun, ended;
+    bool operator==(const Lists&) const = default;
+};
+
+// A tree, its boxes and the pairs there should be.
+class Scene {
+public:
+    Scene(Boxes fixed, Boxes moving, int width = 0, int workers = 1)
+        : boxes(std::move(moving)), fixed_(std::move(fixed)), tasks(workers), tree(&memory_, width) {
+        tree.set_fixed(fixed_.data(), static_cast<int>(fixed_.size()), &tasks);
+        tree.set_moving(boxes.data(), static_cast<int>(boxes.size()), &tasks);
+        before_ = boxes;
+    }
+    // Tells the tree what has become of `boxes`.
+    Lists update() {
+        std::vector<uint32_t> changed;
+        for (size_t i = 0; i < std::min(boxes.size(), before_.size()); ++i) {
+            if (std::memcmp(&boxes[i], &before_[i], sizeof(BroadBox))) changed.push_back(static_cast<uint32_t>(i));
+        }
+        Array<BoxPair> begun, ended;
+        tree.update(tasks, boxes.data(), static_cast<int>(boxes.size()), changed.data(),
+                    static_cast<int>(changed.size()), begun, ended);
+        before_ = boxes;
+        return {as_written(begun), as_written(ended)};
+    }
+    // The same, and compares with brute force.
+    void update_and_compare(const std::string& what) {
+        Pairs old = expected_pairs(fixed_, before_), now = expected_pairs(fixed_, boxes);
+        Lists expected;
+        std::set_difference(now.begin(), now.end(), old.begin(), old.end(), std::back_inserter(expected.begun));
+        std::set_difference(old.begin(), old.end(), now.begin(), now.end(), std::back_inserter(expected.ended));
+        Lists found = update();
+        ASSERT_EQ(found.begun, expected.begun) << what;
+        ASSERT_EQ(found.ended, expected.ended) << what;
+        ASSERT_STREQ(tree.check(), "") << what;
+        ASSERT_EQ(sorted(all_pairs(tree, tasks)), now) << what;
+    }
+
+    Boxes boxes;
+
+private:
+    Boxes fixed_, before_;
+    Memory memory_;
+
+public:
+    TaskPool tasks;
+    WideTree tree;
+};
+
+TEST(WideTreeTest, WidthsWriteTheSameLists) {
+    for (const std::string& kind : distributions) {
+        for (int n : {5, 100, 700}) {
+            Boxes fixed = make_boxes(kind, n / 2, 3, 100000), moving = make_boxes(kind, n, 4);
+            Scene reference(fixed, moving, widths[0]);
+            Pairs pairs = all_pairs(reference.tree, reference.tasks);
+            ASSERT_EQ(sorted(pairs), expected_pairs(fixed, moving)) << kind << n;
+            Random random(static_cast<uint32_t>(n));
+            for (BroadBox& box : reference.boxes) {
+                if (random.below(4) == 0) move_by(box, random, 0.4f);
+            }
+            Lists lists = reference.update();
+            for (int width : widths) {
+                Scene other(fixed, moving, width);
+                EXPECT_EQ(all_pairs(other.tree, other.tasks), pairs) << kind << n << ' ' << width;
+                other.boxes = reference.boxes;
+                EXPECT_EQ(other.update(), lists) << kind << n << ' ' << width;
+                EXPECT_EQ(all_pairs(other.tree, other.tasks), all_pairs(reference.tree, reference.tasks));
+            }
+        }
+    }
+}
+
+TEST(WideTreeTest, WorkersWriteTheSameLists) {
+    Boxes fixed = make_boxes("ground", 3000, 3, 100000), moving = make_boxes("clustered", 9000, 4);
+    Scene reference(fixed, moving);
+    Pairs pairs = all_pairs(reference.tree, reference.tasks);
+    Random random(5);
+    for (BroadBox& box : reference.boxes) {
+        if (random.below(3) == 0) move_by(box, random, 0.4f);
+    }
+    Lists lists = reference.update();
+    EXPECT_FALSE(lists.begun.empty());
+    EXPECT_FALSE(lists.ended.empty());
+    for (int workers : {2, 5, 8}) {
+        Scene other(fixed, moving, 0, workers);
+        EXPECT_EQ(all_pairs(other.tree, other.tasks), pairs) << workers;
+        other.boxes = reference.boxes;
+        EXPECT_EQ(other.update(), lists) << workers;
+        EXPECT_STREQ(other.tree.check(), "");
+    }
+}
+
+TEST(WideTreeTest, BoxesThatMoveALittleKeepTheirLanes) {
+    Scene scene(make_boxes("plane", 100, 1, 100000), make_boxes("uniform", 1000, 2));
+    Random random(1);
+    for (int frame = 0; frame < 40; ++frame) {
+        for (BroadBox& box : scene.boxes) {
+            if (random.below(20) == 0) move_by(box, random, 0.1f);
+        }
+        scene.update_and_compare("frame " + std::to_string(frame));
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_EQ(scene.tree.builds(), 1);
+}
+
+TEST(WideTreeTest, BoxesNotListedAreNotLookedAt) {
+    Scene scene({}, make_boxes("uniform", 1000, 2));
+    Boxes rest = scene.boxes;
+    auto frame = [&] {  // with box 7 in its place and nonsense in all others
+        Boxes poisoned = scene.boxes;
+        for (BroadBox& box : poisoned) std::memset(static_cast<void*>(&box), 0xff, sizeof box);
+        poisoned[7] = rest[7];
+        Array<BoxPair> begun, ended;
+        uint32_t changed = 7;
+        scene.tree.update(scene.tasks, poisoned.data(), 1000, &changed, 1, begun, ended);
+        return Lists{as_written(begun), as_written(ended)};
+    };
+    Pairs before = expected_pairs({}, rest), after;
+    Random random(3);
+    for (int k = 0; k < 20; ++k) {
+        move_by(rest[7], random, 0.3f);
+        Lists lists = frame();
+        after = expected_pairs({}, rest);
+        Pairs with_begun;
+        std::set_union(before.begin(), before.end(), lists.begun.begin(), lists.begun.end(),
+                       std::back_inserter(with_begun));
+        Pairs left;
+        std::set_difference(with_begun.begin(), with_begun.end(), lists.ended.begin(), lists.ended.end(),
+                            std::back_inserter(left));
+        ASSERT_EQ(left, after);
+        before = after;
+    }
+    EXPECT_EQ(scene.tree.builds(), 1);
+}
+
+TEST(WideTreeTest, JumpsWearTheTreeUntilItIsBuiltAnew) {
+    Scene scene(make_boxes("plane", 50, 1, 100000), make_boxes("uniform", 800, 2));
+    Random random(2);
+    for (int frame = 0; frame < 120; ++frame) {
+        for (int k = 0; k < 5; ++k) {
+            BroadBox& box = scene.boxes[static_cast<size_t>(random.below(800))];
+            box = box_around({random.uniform(0, 14), random.uniform(0, 14), random.uniform(0, 14)}, {.4f, .3f, .5f},
+                             box.index);
+        }
+        scene.update_and_compare("frame " + std::to_string(frame));
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(scene.tree.builds(), 1);
+    EXPECT_LT(scene.tree.builds(), 60);  // and not at every other jump
+}
+
+TEST(WideTreeTest, BoxesThatDriftApartAreBuiltAnew) {
+    Scene scene({}, make_boxes("uniform", 1000, 2));
+    for (int frame = 0; frame < 30; ++frame) {
+        for (BroadBox& box : scene.boxes) {  // every other box to the other side
+            float by = box.index % 2 ? 0.2f : -0.2f;
+            box.lower[0] += by;
+            box.upper[0] += by;
+        }
+        scene.update_and_compare("frame " + std::to_string(frame));
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(scene.tree.builds(), 1);
+}
+
+TEST(WideTreeTest, TheLastBoxInTheHoleOfARemovedOneKeepsItsLane) {
+    Scene scene(make_boxes("plane", 50, 1, 100000), make_boxes("uniform", 1000, 2));
+    Random random(4);
+    for (int frame = 0; frame < 60; ++frame) {
+        for (int k = 0; k < 3; ++k) {
+            scene.boxes[static_cast<size_t>(random.below(static_cast<int>(scene.boxes.size())))] = scene.boxes.back();
+            scene.boxes.pop_back();
+        }
+        scene.update_and_compare("frame " + std::to_string(frame));
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_EQ(scene.tree.builds(), 1);  // moving it to a loose group would have worn the tree
+}
+
+TEST(WideTreeTest, BoxesComeAndGoAndBecomeInfinite) {
+    for (int width : widths) {
+        Scene scene(make_boxes("uniform", 60, 1, 100000), {}, width, 2);
+        Random random(6);
+        uint32_t next_index = 0;
+        for (int frame = 0; frame < 80; ++frame) {
+            int come = frame == 40 ? 600 : random.below(20);
+            for (const BroadBox& box : make_boxes("uniform", come, static_cast<uint32_t>(frame), next_index)) {
+                scene.boxes.push_back(box);
+            }
+            next_index += static_cast<uint32_t>(come);
+            for (BroadBox& box : scene.boxes) {
+                if (random.below(100)) continue;
+                float& side = box.upper[random.below(3)];
+                side = side == inf ? 20 : inf;
+            }
+            if (frame == 60) scene.boxes.resize(scene.boxes.size() / 10);
+            if (frame == 70) std::reverse(scene.boxes.begin(), scene.boxes.end());
+            if (frame == 75) scene.boxes.clear();
+            scene.update_and_compare(std::to_string(width) + ", frame " + std::to_string(frame));
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
+// Sum of the edge lengths of all groups but the largest ones.
+float size_of_groups(const Boxes& boxes, size_t left_out) {
+    Scene scene({}, boxes);
+    Array<BroadPhaseBox> nodes;
+    scene.tree.boxes(nodes);
+    int leaf_depth = 0;
+    for (const BroadPhaseBox& node : nodes) leaf_depth = std::max(leaf_depth, node.depth);
+    std::vector<float> sizes;
+    for (const BroadPhaseBox& node : nodes) {
+        if (node.leaf || node.depth != leaf_depth - 1) continue;
+        float size = 0;
+        for (int d = 0; d < 3; ++d) size += node.upper[d] - node.lower[d];
+        sizes.push_back(size);
+    }
+    std::sort(sizes.begin(), sizes.end());
+    float sum = 0;
+    for (size_t i = 0; i + left_out < sizes.size(); ++i) sum += sizes[i];
+    return sum;
+}
+
+TEST(WideTreeTest, StraysAndHugeBoxesSpoilOnlyTheirOwnGroups) {
+    Boxes boxes = make_boxes("uniform", 4000, 2);
+    float usual = size_of_groups(boxes, 0);
+    Boxes strays = boxes;
+    for (size_t i = 0; i < 3; ++i) {
+        strays[1000 * i] =
+            box_around({1e6f, 3e5f * static_cast<float>(i), -1e6f}, {.5f, .5f, .5f}, strays[1000 * i].index);
+    }
+    EXPECT_LT(size_of_groups(strays, 3), 1.3f * usual);
+    Boxes huge = boxes;
+    for (size_t i = 0; i < 40; ++i) huge[100 * i] = box_around({8, 8, 8}, {500, 1, 500}, huge[100 * i].index);
+    EXPECT_LT(size_of_groups(huge, 2), 1.3f * usual);  // forty boxes, in two groups at most
+}
+
+TEST(WideTreeTest, SwarmsFarApartAreResolved) {
+    Boxes near = make_boxes("uniform", 2000, 2), far = near;
+    for (size_t i = 0; i < far.size(); ++i) {  // two swarms, each tiny beside their distance
+        for (int d = 0; d < 3; ++d) {
+            float by = i % 2 ? 4096.0f : 0.0f;
+            far[i].lower[d] += by;
+            far[i].upper[d] += by;
+        }
+    }
+    // Half as dense, so a group is 2^(1/3) as long; a few groups, however many boxes there are, reach from one swarm to
+    // the other where the order of slabs and strips goes across.
+    EXPECT_LT(size_of_groups(far, 5), 1.6f * size_of_groups(near, 0));
+}
+
+}  // namespace
