@@ -9,6 +9,7 @@ void SolverBodies::reset(int moving) {
     inertia.resize_unset(padded);
     start.resize_unset(padded);
     motion.resize_unset(padded);
+    blocks.resize_unset(padded / block_bodies);
     auto at_rest = [&](size_t i) {
         state[i] = BodyState{};
         state[i].dq[3] = 1.0f;

@@ -62,6 +62,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
                    const ContactRecord* records) {
     SubstepConstants k = substep_constants(settings);
     k.joints = !joints_.empty();
+    for_each_body_block(tasks, bodies, [&](int begin, int end) { kernels_.begin_step(bodies, begin, end); });
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const bool first = substep == 0;
         k.moved = resolve_impacts(bodies, records, bouncing_.data(), bouncing_.count(), k);
