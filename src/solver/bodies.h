@@ -75,6 +75,11 @@ struct alignas(64) BodyBlock {
 };
 static_assert(sizeof(BodyState) == 64 && sizeof(BodyInertia) == 32 && sizeof(BodyMotion) == 128);
 
+// Bodies [begin, end), both multiples of block_bodies.
+struct BodyRange {
+    int begin, end;
+};
+
 struct SolverBodies {
     Array<BodyState> state;
     Array<BodyInertia> inertia;
@@ -87,6 +92,8 @@ struct SolverBodies {
         : state(memory), inertia(memory), start(memory), motion(memory), blocks(memory) {}
     // Makes room for `moving` bodies and sets the reserved and padding entries.
     void reset(int moving);
+    // Makes an entry that is part of no constraint.
+    void set_at_rest(int body);
 };
 
 }  // namespace lendulet

@@ -206,6 +206,7 @@ LENDULET_FORCE_INLINE void scatter8(float* base, const int32_t* index, int strid
         }
         transpose4(low[0], low[1], low[2], low[3]);
         transpose4(high[0], high[1], high[2], high[3]);
+        asm volatile("" : "+r"(index));  // fresh loads of the indices: kept ones would be spilled
         auto put = [&](int i, Float8 v) { store_wide(base + static_cast<ptrdiff_t>(index[i]) * stride + offset, v); };
         for (int k = 0; k < 4; ++k) {
             put(k, __builtin_shufflevector(low[k], low[k], 0, 1, 2, 3, 4, 5, 6, 7));
