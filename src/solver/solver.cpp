@@ -12,9 +12,8 @@ constexpr int contacts_per_task = 128;  // manifolds in a chunk, whatever the wi
 template <class Run>
 void for_each_body_block(TaskPool& tasks, BodyRange range, Run&& run) {
     int first = range.begin / block_bodies, blocks = (range.end - range.begin + block_bodies - 1) / block_bodies;
-    tasks.for_each(blocks, bodies_per_task / block_bodies, [&](int begin, int end, int) {
-        run((first + begin) * block_bodies, (first + end) * block_bodies);
-    });
+    tasks.for_each(blocks, bodies_per_task / block_bodies,
+                   [&](int begin, int end, int) { run((first + begin) * block_bodies, (first + end) * block_bodies); });
 }
 
 }  // namespace
@@ -60,8 +59,8 @@ void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointRecord* 
     joints_.prepare(tasks, bodies, joints, count, contacts, kernels_, scalar_);
 }
 
-void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies,
-                   const ContactRecord* records, BodyRange range) {
+void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
+                   BodyRange range) {
     if (range.begin >= range.end) return;
     SubstepConstants k = substep_constants(settings);
     k.joints = !joints_.empty();

@@ -13,12 +13,12 @@
 namespace lendulet {
 namespace {
 
-constexpr int most_contacts = 1024;        // of an island, times its multiple of substeps
-constexpr float allowed_sinking = 1e-3f;   // of the size of the bodies
-constexpr float buckling_reserve = 1.7f;   // above the load at which a column of boxes was seen to buckle
-constexpr float resting_speed = 0.5f;      // m/s; what moves faster is no load but an impact
-constexpr float kept_reserve = 1.6f;       // a class is left only when fewer substeps would carry this many times the load
-constexpr int patience = 60;               // ... for so many steps: a column that has just stiffened springs up a little
+constexpr int most_contacts = 1024;       // of an island, times its multiple of substeps
+constexpr float allowed_sinking = 1e-3f;  // of the size of the bodies
+constexpr float buckling_reserve = 1.7f;  // above the load at which a column of boxes was seen to buckle
+constexpr float resting_speed = 0.5f;     // m/s; what moves faster is no load but an impact
+constexpr float kept_reserve = 1.6f;  // a class is left only when fewer substeps would carry this many times the load
+constexpr int patience = 60;          // ... for so many steps: a column that has just stiffened springs up a little
 
 uint32_t root(Array<IslandLoad>& loads, uint32_t i) {
     while (loads[i].parent != i) {
@@ -34,8 +34,18 @@ void entry(WorldData& world, uint32_t slot) {
     if (l.step == world.steps + 1) return;
     float height = dot(from_origin(world.bodies.pose[slot].position), world.config.gravity);
     bool known = l.step == world.steps;
-    l = {world.steps + 1, slot,  0,    0.0f, 0.0f, height, height, known ? l.substeps : uint8_t{0},
-         known ? l.waited : uint8_t{0}, 0, false, false};
+    l = {world.steps + 1,
+         slot,
+         0,
+         0.0f,
+         0.0f,
+         height,
+         height,
+         known ? l.substeps : uint8_t{0},
+         known ? l.waited : uint8_t{0},
+         0,
+         false,
+         false};
 }
 
 void join(Array<IslandLoad>& loads, uint32_t a, uint32_t b) {

@@ -36,10 +36,10 @@ struct IslandLoad {
     int contacts;
     float sinking, buckling;  // greatest load ratio of its contacts, per size and per size cubed
     float lowest, highest;    // positions along gravity, times gravity
-    uint8_t before;            // class in the step before
-    uint8_t waited;            // steps since when fewer substeps would do
-    uint8_t substeps;          // class
-    bool tied, decided;  // tied: to joints or to a kinematic body in motion, which take the setting's substeps
+    uint8_t before;           // class in the step before
+    uint8_t waited;           // steps since when fewer substeps would do
+    uint8_t substeps;         // class
+    bool tied, decided;       // tied: to joints or to a kinematic body in motion, which take the setting's substeps
 };
 
 // Stretches of the packed bodies and of the active contacts that are solved together.
@@ -83,7 +83,7 @@ struct WorldData {
     Array<IslandLoad> island_loads;  // by body slot
     SolverPart parts[substep_classes];
     Solver solvers[substep_classes];  // joints are solved by the first
-    Array<uint32_t> island_parent;  // union-find over body slots
+    Array<uint32_t> island_parent;    // union-find over body slots
     Array<float> island_still;
 
     float last_h = 0.0f;  // substep that the stored impulses belong to

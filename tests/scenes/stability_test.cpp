@@ -51,8 +51,8 @@ TEST(Stability, StackOf20StandsForAMinute) {
     EXPECT_LE(stand.speed, 1e-2f);
 }
 
-// Islands that carry much take more substeps (docs/solver.md, hard islands): faces sink by less than 5 mm even where one
-// box carries a thousand times its weight.
+// Islands that carry much take more substeps (docs/solver.md, hard islands): faces sink by less than 5 mm even where
+// one box carries a thousand times its weight.
 TEST(Stability, TallStacksStandForAMinute) {
     for (const char* name : {"stack:50", "stack:100"}) {
         Stand stand = stand_for_a_minute(name);
