@@ -4,22 +4,26 @@ namespace lendulet {
 
 void SolverBodies::reset(int moving) {
     count = reserved_bodies + moving;
-    size_t padded = (static_cast<size_t>(count) + 15) / 16 * 16;
-    state.resize_unset(padded);
-    inertia.resize_unset(padded);
-    start.resize_unset(padded);
-    motion.resize_unset(padded);
-    auto at_rest = [&](size_t i) {
-        state[i] = BodyState{};
-        state[i].dq[3] = 1.0f;
-        inertia[i] = BodyInertia{};
-        start[i] = BodyStart{};
-        motion[i] = BodyMotion{};
-        motion[i].q0[3] = 1.0f;
-        motion[i].anisotropy = motion[i].free = 1.0f;
-    };
-    for (size_t i = 0; i < reserved_bodies; ++i) at_rest(i);
-    for (size_t i = static_cast<size_t>(count); i < padded; ++i) at_rest(i);
+    int padded = (count + block_bodies - 1) / block_bodies * block_bodies;
+    size_t size = static_cast<size_t>(padded);
+    state.resize_unset(size);
+    inertia.resize_unset(size);
+    start.resize_unset(size);
+    motion.resize_unset(size);
+    blocks.resize_unset(size / block_bodies);
+    for (int i = 0; i < reserved_bodies; ++i) set_at_rest(i);
+    for (int i = count; i < padded; ++i) set_at_rest(i);
+}
+
+void SolverBodies::set_at_rest(int body) {
+    size_t i = static_cast<size_t>(body);
+    state[i] = BodyState{};
+    state[i].dq[3] = 1.0f;
+    inertia[i] = BodyInertia{};
+    start[i] = BodyStart{};
+    motion[i] = BodyMotion{};
+    motion[i].q0[3] = 1.0f;
+    motion[i].anisotropy = motion[i].free = 1.0f;
 }
 
 }  // namespace lendulet

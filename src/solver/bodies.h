@@ -1,8 +1,8 @@
 // The bodies of one step as the solver sees them: awake bodies only, packed without holes, split by who reads what.
 //
 // BodyState is one cache line and all that constraint rows touch besides inertia; rows gather and scatter it by
-// transposing quads (LEADS: hardware gather and component arrays were both slower). BodyMotion is read and written once
-// a substep by the integrator, front to back, and never gathered.
+// transposing quads (hardware gather and component arrays were both slower). BodyMotion is what is packed before
+// the step and unpacked after it; BodyBlock is what the integrator works on.
 //
 // The first `reserved_bodies` entries are at rest with infinite mass: they stand for every static body and for the
 // empty lanes of a partly filled block, so kernels need no branches.
@@ -41,6 +41,7 @@ struct alignas(32) BodyInertia {
         gyro_y;  // where there are joints, from kick to drift: angular acceleration by the body's own spin, rad/s^2
 };
 
+// What a body brings into the step and, of L and the changes, what it takes out of it.
 struct alignas(64) BodyMotion {
     float q0[4];               // orientation of the principal axes at the start of the step
     float inertia[3];          // principal, kg m^2; 0 for kinematic bodies
@@ -53,28 +54,46 @@ struct alignas(64) BodyMotion {
     float free;                 // 1: no constraint acts on this body in this step
     float torque[3];            // applied, world axes, damping included
     float joints;               // 1: has joints; 2: and its group touches nothing: a split kick. Set by the solver
-    float v_ref[3], unused1;    // velocities as the running pass of constraints found them
-    float w_ref[3], unused2;
-    float dv[3], unused3;  // what constraints added since the last kick: the next substep's warm start
-    float dw[3], unused4;
-    float v_start[3], unused5;  // velocity and L at the start of the substep ...
-    float L_start[3], unused6;
-    float change_v[3], unused7;  // ... and how the substep before changed them: the acceleration the drift expects
-    float change_L[3], unused8;
-    float unused9[8];
+    float change_v[3], unused1;  // how the last substep changed velocity and L: the acceleration the drift expects
+    float change_L[3], unused2;
 };
-static_assert(sizeof(BodyState) == 64 && sizeof(BodyInertia) == 32 && sizeof(BodyMotion) == 256);
+
+// Sixteen bodies as kick and drift see them, component by component: read and written front to back twice a substep,
+// never gathered, so lanes need no transposing. Begun from BodyMotion before the first substep.
+inline constexpr int block_bodies = 16;
+struct alignas(64) BodyBlock {
+    using Lanes = float[block_bodies];
+    Lanes q0[4], inertia[3], inverse_inertia[3];
+    Lanes acceleration[3], torque[3];
+    Lanes start_v[3], start_w[3];
+    Lanes linear_loss, angular_loss, anisotropy, free, joints;
+    Lanes L[3];
+    Lanes v_ref[3], w_ref[3];        // velocities as the running pass of constraints found them
+    Lanes dv[3], dw[3];              // what constraints added since the last kick: the next substep's warm start
+    Lanes v_start[3], L_start[3];    // velocity and L at the start of the substep ...
+    Lanes change_v[3], change_L[3];  // ... and how the substep before changed them
+};
+static_assert(sizeof(BodyState) == 64 && sizeof(BodyInertia) == 32 && sizeof(BodyMotion) == 128);
+
+// Bodies [begin, end), both multiples of block_bodies.
+struct BodyRange {
+    int begin, end;
+};
 
 struct SolverBodies {
     Array<BodyState> state;
     Array<BodyInertia> inertia;
     Array<BodyStart> start;
     Array<BodyMotion> motion;
+    Array<BodyBlock> blocks;
     int count = 0;  // with the reserved ones; arrays are padded to a multiple of 16
 
-    explicit SolverBodies(const Memory* memory) : state(memory), inertia(memory), start(memory), motion(memory) {}
+    explicit SolverBodies(const Memory* memory)
+        : state(memory), inertia(memory), start(memory), motion(memory), blocks(memory) {}
     // Makes room for `moving` bodies and sets the reserved and padding entries.
     void reset(int moving);
+    // Makes an entry that is part of no constraint.
+    void set_at_rest(int body);
 };
 
 }  // namespace lendulet

@@ -18,37 +18,70 @@
 // split: half of the applied forces acts before the drift and half after it (kick-drift-kick), and what joints add
 // follows in the relax pass. Elsewhere all of the kick comes first, as contacts want it.
 
+// Lanes [first, first + W) of the components of a BodyBlock.
 template <int W>
-struct MotionBlock {
+struct BlockLanes {
     using F = Wide<float, W>;
-    static constexpr int stride = sizeof(BodyMotion) / sizeof(float);
-    LENDULET_FORCE_INLINE static Vec3T<F> load(const BodyMotion* m, int first, int quad, F& w) {
-        F q[4];
-        load4<W>(floats_of(m), first, stride, 4 * quad, q);
-        w = q[3];
-        return {q[0], q[1], q[2]};
+    BodyBlock& block;
+    int at;
+    LENDULET_FORCE_INLINE BlockLanes(SolverBodies& bodies, int first)
+        : block(bodies.blocks[static_cast<size_t>(first / block_bodies)]), at(first % block_bodies) {}
+    LENDULET_FORCE_INLINE F get(const BodyBlock::Lanes& x) const { return load_wide<F>(x + at); }
+    LENDULET_FORCE_INLINE Vec3T<F> get(const BodyBlock::Lanes (&x)[3]) const {
+        return {load_wide<F>(x[0] + at), load_wide<F>(x[1] + at), load_wide<F>(x[2] + at)};
     }
-    LENDULET_FORCE_INLINE static void store(BodyMotion* m, int first, int quad, Vec3T<F> v, F w) {
-        F q[4] = {v.x, v.y, v.z, w};
-        store4<W>(floats_of(m), first, stride, 4 * quad, q);
+    LENDULET_FORCE_INLINE QuatT<F> get(const BodyBlock::Lanes (&x)[4]) const {
+        return {load_wide<F>(x[0] + at), load_wide<F>(x[1] + at), load_wide<F>(x[2] + at), load_wide<F>(x[3] + at)};
+    }
+    LENDULET_FORCE_INLINE void put(BodyBlock::Lanes& x, F v) const { store_wide(x + at, v); }
+    LENDULET_FORCE_INLINE void put(BodyBlock::Lanes (&x)[3], Vec3T<F> v) const {
+        store_wide(x[0] + at, v.x);
+        store_wide(x[1] + at, v.y);
+        store_wide(x[2] + at, v.z);
     }
 };
-enum MotionQuad {
-    quad_q0,
-    quad_inertia,
-    quad_inverse,
-    quad_L,
-    quad_acceleration,
-    quad_torque,
-    quad_v_ref,
-    quad_w_ref,
-    quad_dv,
-    quad_dw,
-    quad_v_start,
-    quad_L_start,
-    quad_change_v,
-    quad_change_L
+
+// Indices of W consecutive bodies.
+template <int W>
+struct Consecutive {
+    int32_t index[W];
+    LENDULET_FORCE_INLINE explicit Consecutive(int first) {
+        for (int l = 0; l < W; ++l) index[l] = first + l;
+    }
 };
+
+// Before the first substep.
+template <int W>
+void begin_bodies(SolverBodies& bodies, int begin, int end) {
+    using F = Wide<float, W>;
+    constexpr int stride = sizeof(BodyMotion) / sizeof(float);
+    for (int i = begin; i < end; i += W) {
+        Consecutive<W> c(i);
+        BlockLanes<W> x(bodies, i);
+        F m[32];
+        for (int k = 0; k < 32; k += 8)
+            gather8<W>(floats_of(bodies.motion.data()), c.index, stride, k, m + k);
+        BodyBlock& b = x.block;
+        for (int k = 0; k < 4; ++k) x.put(b.q0[k], m[k]);
+        for (int k = 0; k < 3; ++k) {
+            x.put(b.inertia[k], m[4 + k]);
+            x.put(b.inverse_inertia[k], m[8 + k]);
+            x.put(b.L[k], m[12 + k]);
+            x.put(b.acceleration[k], m[16 + k]);
+            x.put(b.torque[k], m[20 + k]);
+            x.put(b.change_v[k], m[24 + k]);
+            x.put(b.change_L[k], m[28 + k]);
+        }
+        x.put(b.linear_loss, m[7]);
+        x.put(b.angular_loss, m[11]);
+        x.put(b.anisotropy, m[15]);
+        x.put(b.free, m[19]);
+        x.put(b.joints, m[23]);
+        WideVelocity<F> start = load_start<W>(bodies.start.data(), c.index);
+        x.put(b.start_v, start.v);
+        x.put(b.start_w, start.w);
+    }
+}
 
 // Theta w or Theta^-1 L: R diag(principal) R^T applied to a world vector.
 template <class F>
@@ -74,32 +107,34 @@ LENDULET_FORCE_INLINE QuatT<F> normalized(QuatT<F> q) {
 
 inline constexpr int max_turn_parts = 32;
 
-// Turns dq q0 over h at constant L. The fixed point of the midpoint rule contracts for h |w| anisotropy < 1, so fast
-// and slender bodies are turned in parts; kinematic lanes (no inertia) turn with their given w.
+// Turns dq q0 over h at constant L. The fixed point of the midpoint rule contracts by h |w| anisotropy / 2 an iteration,
+// so fast and slender bodies are turned in parts, and slow ones need fewer than the four iterations: as many as leave
+// an error below 1e-7 rad. Kinematic lanes (no inertia) turn with their given w. What a lane does never depends on its
+// neighbours; only work that no lane of a block asks for is left out.
 template <int W>
 LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float, W>> dq, QuatT<Wide<float, W>> q0,
                                                                Vec3T<Wide<float, W>> L, Vec3T<Wide<float, W>> inverse,
                                                                Vec3T<Wide<float, W>> w, Wide<float, W> anisotropy,
                                                                float h) {
     using F = Wide<float, W>;
-    const F one = splat<F>(1.0f), zero = splat<F>(0.0f);
+    const F one = splat<F>(1.0f), zero = splat<F>(0.0f), four = splat<F>(4.0f);
     auto given = (inverse.x + inverse.y + inverse.z) <= zero;
-    auto fixed_axis = anisotropy <= one;
     F wish = splat<F>(2.0f * h) * square_root(dot(w, w)) * anisotropy;
-    F parts = one;  // smallest power of two above the wish: steps of a lane never depend on its neighbours
-    for (int i = 1; i < max_turn_parts; i *= 2) parts = select(wish > parts, parts + parts, parts);
+    F iterations = select(wish > splat<F>(0.01f), select(wish > splat<F>(0.05f), four, splat<F>(2.0f)), one);
+    iterations = select(anisotropy <= one, zero, iterations);  // about a fixed axis L gives the velocity at once
+    F parts = one;  // smallest power of two above the wish
+    if (mask_bits(wish > one))
+        for (int i = 1; i < max_turn_parts; i *= 2) parts = select(wish > parts, parts + parts, parts);
     F step = splat<F>(h) / parts;
-    float most = 1.0f;
-    for (int l = 0; l < W; ++l) most = lane(parts, l) > most ? lane(parts, l) : most;
     QuatT<F> q = dq;
-    for (float part = 0.0f; part < most; part += 1.0f) {
+    for (float part = 0.0f; mask_bits(splat<F>(part) < parts); part += 1.0f) {
         auto active = splat<F>(part) < parts;
         F half = splat<F>(0.5f) * step;
         Vec3T<F> rate = select(given, w, apply_principal(multiply(q, q0), inverse, L));
-        for (int i = 0; i < 4; ++i) {
+        for (float i = 0.0f; mask_bits(splat<F>(i) < iterations); i += 1.0f) {
             QuatT<F> mid = multiply(turn_quaternion(half * rate), q);
             Vec3T<F> next = apply_principal(multiply(mid, q0), inverse, L);
-            rate = select(given, w, select(fixed_axis, rate, next));
+            rate = select(given, w, select(splat<F>(i) < iterations, next, rate));
         }
         q = select(active, normalized(multiply(turn_quaternion(step * rate), q)), q);
     }
@@ -132,63 +167,48 @@ LENDULET_FORCE_INLINE void store_gyro(SolverBodies& bodies, const int32_t* index
 template <int W>
 void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, bool first_substep, int begin, int end) {
     using F = Wide<float, W>;
-    using M = MotionBlock<W>;
-    BodyMotion* motion = bodies.motion.data();
     for (int i = begin; i < end; i += W) {
-        int32_t index[W];
-        for (int l = 0; l < W; ++l) index[l] = i + l;
-        WideVelocity<F> x = load_velocity<W>(bodies.state.data(), index),
-                        start = load_start<W>(bodies.start.data(), index);
+        Consecutive<W> c(i);
+        BlockLanes<W> y(bodies, i);
+        BodyBlock& b = y.block;
+        WideVelocity<F> x = load_velocity<W>(bodies.state.data(), c.index);
         auto movable = x.inverse_mass > splat<F>(0.0f);
-        F unused, linear_loss, angular_loss, anisotropy;
-        Vec3T<F> inertia = M::load(motion, i, quad_inertia, linear_loss);
-        M::load(motion, i, quad_inverse, angular_loss);
-        Vec3T<F> L = M::load(motion, i, quad_L, anisotropy);
-        Vec3T<F> dv = zero_vector<F>(), dw = dv, change_v, change_L;
-        if (first_substep) {
-            change_v = M::load(motion, i, quad_change_v, unused);
-            change_L = M::load(motion, i, quad_change_L, unused);
-        } else {
+        Vec3T<F> L = y.get(b.L), dv = zero_vector<F>(), dw = dv;
+        if (!first_substep) {
             Vec3T<F> dp;
             QuatT<F> dq;
-            load_displacement<W>(bodies.state.data(), index, dp, dq);
-            F q[4];
-            load4<W>(floats_of(motion), i, M::stride, 4 * quad_q0, q);
-            QuatT<F> orientation = multiply(dq, QuatT<F>{q[0], q[1], q[2], q[3]});
-            Vec3T<F> rv = x.v - M::load(motion, i, quad_v_ref, unused),
-                     rw = x.w - M::load(motion, i, quad_w_ref, unused);
-            dv = M::load(motion, i, quad_dv, unused) + rv;
-            dw = M::load(motion, i, quad_dw, unused) + rw;
-            L = L + apply_principal(orientation, inertia, rw);
-            change_v = x.v - M::load(motion, i, quad_v_start, unused);
-            change_L = L - M::load(motion, i, quad_L_start, unused);
+            load_displacement<W>(bodies.state.data(), c.index, dp, dq);
+            Vec3T<F> rv = x.v - y.get(b.v_ref), rw = x.w - y.get(b.w_ref);
+            dv = y.get(b.dv) + rv;
+            dw = y.get(b.dw) + rw;
+            L = L + apply_principal(multiply(dq, y.get(b.q0)), y.get(b.inertia), rw);
+            y.put(b.change_v, x.v - y.get(b.v_start));
+            y.put(b.change_L, L - y.get(b.L_start));
         }
-        M::store(motion, i, quad_v_start, x.v, splat<F>(0.0f));
-        M::store(motion, i, quad_L_start, L, splat<F>(0.0f));
-        M::store(motion, i, quad_change_v, change_v, splat<F>(0.0f));
-        M::store(motion, i, quad_change_L, change_L, splat<F>(0.0f));
-        F free, joints, h = splat<F>(k.h);
-        Vec3T<F> acceleration = M::load(motion, i, quad_acceleration, free),
-                 torque = M::load(motion, i, quad_torque, joints);
+        y.put(b.v_start, x.v);
+        y.put(b.L_start, L);
+        F h = splat<F>(k.h);
         if (k.joints) {
-            auto split = joint_mode(joints).split > splat<F>(0.0f);
+            auto split = joint_mode(y.get(b.joints)).split > splat<F>(0.0f);
             h = select(split, splat<F>(0.5f) * h, h);
             dv = select(split, zero_vector<F>(), dv);
             dw = select(split, zero_vector<F>(), dw);
-            M::store(motion, i, quad_dv, dv, splat<F>(0.0f));
-            M::store(motion, i, quad_dw, dw, splat<F>(0.0f));
+            y.put(b.dv, dv);
+            y.put(b.dw, dw);
         }
-        L = L - angular_loss * L + h * torque;
-        SymMat3T<F> I = load_inverse_inertia<W>(bodies.inertia.data(), index);
-        x.v = x.v + select(movable, h * acceleration - linear_loss * (start.v + x.v), zero_vector<F>());
-        x.w = select(movable, I * L - start.w, x.w);
-        if (k.joints) store_gyro<W>(bodies, index, I, L, start.w + x.w);
-        M::store(motion, i, quad_L, L, anisotropy);
-        M::store(motion, i, quad_v_ref, x.v, splat<F>(0.0f));
-        M::store(motion, i, quad_w_ref, x.w, splat<F>(0.0f));
+        Vec3T<F> start_w = y.get(b.start_w);
+        L = L - y.get(b.angular_loss) * L + h * y.get(b.torque);
+        SymMat3T<F> I = load_inverse_inertia<W>(bodies.inertia.data(), c.index);
+        Vec3T<F> push = h * y.get(b.acceleration) - y.get(b.linear_loss) * (y.get(b.start_v) + x.v);
+        x.v = x.v + select(movable, push, zero_vector<F>());
+        x.w = select(movable, I * L - start_w, x.w);
+        if (k.joints) store_gyro<W>(bodies, c.index, I, L, start_w + x.w);
+        y.put(b.L, L);
+        y.put(b.v_ref, x.v);
+        y.put(b.w_ref, x.w);
         x.v = x.v + dv;
         x.w = x.w + dw;
-        store_velocity<W>(bodies.state.data(), index, x);
+        store_velocity<W>(bodies.state.data(), c.index, x);
     }
 }
 
@@ -203,84 +223,74 @@ LENDULET_FORCE_INLINE Vec3T<F> even_change(Vec3T<F> now, Vec3T<F> before, F free
 template <int W>
 void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
     using F = Wide<float, W>;
-    using M = MotionBlock<W>;
     const F zero = splat<F>(0.0f), half = splat<F>(0.5f);
-    BodyMotion* motion = bodies.motion.data();
     BodyState* state = bodies.state.data();
     for (int i = begin; i < end; i += W) {
-        int32_t index[W];
-        for (int l = 0; l < W; ++l) index[l] = i + l;
-        WideVelocity<F> x = load_velocity<W>(state, index), start = load_start<W>(bodies.start.data(), index);
+        Consecutive<W> c(i);
+        BlockLanes<W> y(bodies, i);
+        BodyBlock& b = y.block;
+        WideVelocity<F> x = load_velocity<W>(state, c.index);
         Vec3T<F> dp;
-        QuatT<F> dq;
-        load_displacement<W>(state, index, dp, dq);
-        F unused, anisotropy, free, q[4];
-        load4<W>(floats_of(motion), i, M::stride, 4 * quad_q0, q);
-        QuatT<F> q0{q[0], q[1], q[2], q[3]};
-        Vec3T<F> inertia = M::load(motion, i, quad_inertia, unused), inverse = M::load(motion, i, quad_inverse, unused);
-        Vec3T<F> L = M::load(motion, i, quad_L, anisotropy);
-        M::load(motion, i, quad_acceleration, free);
-        Vec3T<F> dv = x.v - M::load(motion, i, quad_v_ref, unused), dw = x.w - M::load(motion, i, quad_w_ref, unused);
-        L = L + apply_principal(multiply(dq, q0), inertia, dw);
-        M::store(motion, i, quad_dv, dv, zero);
-        M::store(motion, i, quad_dw, dw, zero);
+        QuatT<F> dq, q0 = y.get(b.q0);
+        load_displacement<W>(state, c.index, dp, dq);
+        Vec3T<F> inverse = y.get(b.inverse_inertia), start_w = y.get(b.start_w);
+        F anisotropy = y.get(b.anisotropy), free = y.get(b.free);
+        Vec3T<F> dv = x.v - y.get(b.v_ref), dw = x.w - y.get(b.w_ref);
+        Vec3T<F> L = y.get(b.L) + apply_principal(multiply(dq, q0), y.get(b.inertia), dw);
+        y.put(b.dv, dv);
+        y.put(b.dw, dw);
 
-        Vec3T<F> change_v = even_change(x.v - M::load(motion, i, quad_v_start, unused),
-                                        M::load(motion, i, quad_change_v, unused), free);
-        Vec3T<F> change_L =
-            even_change(L - M::load(motion, i, quad_L_start, unused), M::load(motion, i, quad_change_L, unused), free);
+        Vec3T<F> change_v = even_change(x.v - y.get(b.v_start), y.get(b.change_v), free);
+        Vec3T<F> change_L = even_change(L - y.get(b.L_start), y.get(b.change_L), free);
         JointMode<F> mode{};
         if (k.joints) {
-            F joints;
-            M::load(motion, i, quad_torque, joints);
-            mode = joint_mode(joints);
+            mode = joint_mode(y.get(b.joints));
             change_v = select(mode.jointed > zero, zero_vector<F>(), change_v);
             change_L = select(mode.jointed > zero, zero_vector<F>(), change_L);
         }
-        dp = dp + splat<F>(k.h) * (start.v + (x.v - half * change_v));
-        dq = turn_at_constant_L<W>(dq, q0, L - half * change_L, inverse, start.w + x.w, anisotropy, k.h);
+        dp = dp + splat<F>(k.h) * (y.get(b.start_v) + (x.v - half * change_v));
+        dq = turn_at_constant_L<W>(dq, q0, L - half * change_L, inverse, start_w + x.w, anisotropy, k.h);
 
         SymMat3T<F> I = rotate_diagonal(rotation_matrix<F>(multiply(dq, q0), splat<F>(1.0f)), inverse);
         if (k.joints) {
             F second = splat<F>(0.5f * k.h) * mode.split;
-            x.v = x.v + second * M::load(motion, i, quad_acceleration, unused);
-            L = L + second * M::load(motion, i, quad_torque, unused);
+            x.v = x.v + second * y.get(b.acceleration);
+            L = L + second * y.get(b.torque);
         }
-        x.w = select(x.inverse_mass > zero, I * L - start.w, x.w);
-        store_velocity<W>(state, index, x);
-        F p[4] = {dp.x, dp.y, dp.z, zero}, r[4] = {dq.x, dq.y, dq.z, dq.w};
-        scatter4<W>(floats_of(state), index, 16, 8, p);
-        scatter4<W>(floats_of(state), index, 16, 12, r);
-        F i0[4] = {I.xx, I.yy, I.zz, I.xy}, i1[4] = {I.xz, I.yz, zero, zero};
-        scatter4<W>(floats_of(bodies.inertia.data()), index, 8, 0, i0);
-        scatter4<W>(floats_of(bodies.inertia.data()), index, 8, 4, i1);
-        M::store(motion, i, quad_L, L, anisotropy);
-        M::store(motion, i, quad_v_ref, x.v, zero);
-        M::store(motion, i, quad_w_ref, x.w, zero);
+        x.w = select(x.inverse_mass > zero, I * L - start_w, x.w);
+        y.put(b.L, L);
+        y.put(b.v_ref, x.v);
+        y.put(b.w_ref, x.w);
+        F velocity[8] = {x.v.x, x.v.y, x.v.z, x.inverse_mass, x.w.x, x.w.y, x.w.z, x.unused};
+        F place[8] = {dp.x, dp.y, dp.z, zero, dq.x, dq.y, dq.z, dq.w};
+        F inertia[8] = {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz, zero, zero};
+        scatter8<W>(floats_of(state), c.index, 16, 0, velocity);
+        scatter8<W>(floats_of(state), c.index, 16, 8, place);
+        scatter8<W>(floats_of(bodies.inertia.data()), c.index, 8, 0, inertia);
     }
 }
 
-// After the last relax: brings L and the changes up to date.
+// After the last relax: leaves L and the changes in BodyMotion.
 template <int W>
 void settle_bodies(SolverBodies& bodies, int begin, int end) {
     using F = Wide<float, W>;
-    using M = MotionBlock<W>;
-    BodyMotion* motion = bodies.motion.data();
+    constexpr int stride = sizeof(BodyMotion) / sizeof(float);
+    const F zero = splat<F>(0.0f);
     for (int i = begin; i < end; i += W) {
-        int32_t index[W];
-        for (int l = 0; l < W; ++l) index[l] = i + l;
-        WideVelocity<F> x = load_velocity<W>(bodies.state.data(), index);
+        Consecutive<W> c(i);
+        BlockLanes<W> y(bodies, i);
+        BodyBlock& b = y.block;
+        WideVelocity<F> x = load_velocity<W>(bodies.state.data(), c.index);
         Vec3T<F> dp;
         QuatT<F> dq;
-        load_displacement<W>(bodies.state.data(), index, dp, dq);
-        F unused, anisotropy, q[4];
-        load4<W>(floats_of(motion), i, M::stride, 4 * quad_q0, q);
-        Vec3T<F> inertia = M::load(motion, i, quad_inertia, unused), L = M::load(motion, i, quad_L, anisotropy);
-        Vec3T<F> rw = x.w - M::load(motion, i, quad_w_ref, unused);
-        L = L + apply_principal(multiply(dq, QuatT<F>{q[0], q[1], q[2], q[3]}), inertia, rw);
-        M::store(motion, i, quad_L, L, anisotropy);
-        M::store(motion, i, quad_change_v, x.v - M::load(motion, i, quad_v_start, unused), splat<F>(0.0f));
-        M::store(motion, i, quad_change_L, L - M::load(motion, i, quad_L_start, unused), splat<F>(0.0f));
+        load_displacement<W>(bodies.state.data(), c.index, dp, dq);
+        Vec3T<F> rw = x.w - y.get(b.w_ref);
+        Vec3T<F> L = y.get(b.L) + apply_principal(multiply(dq, y.get(b.q0)), y.get(b.inertia), rw);
+        Vec3T<F> change_v = x.v - y.get(b.v_start), change_L = L - y.get(b.L_start);
+        F momentum[4] = {L.x, L.y, L.z, y.get(b.anisotropy)};
+        F changes[8] = {change_v.x, change_v.y, change_v.z, zero, change_L.x, change_L.y, change_L.z, zero};
+        scatter4<W>(floats_of(bodies.motion.data()), c.index, stride, 12, momentum);
+        scatter8<W>(floats_of(bodies.motion.data()), c.index, stride, 24, changes);
     }
 }
 
@@ -288,35 +298,30 @@ void settle_bodies(SolverBodies& bodies, int begin, int end) {
 template <int W>
 void book_joints(SolverBodies& bodies, Booking what, int begin, int end) {
     using F = Wide<float, W>;
-    using M = MotionBlock<W>;
     const F zero = splat<F>(0.0f);
-    BodyMotion* motion = bodies.motion.data();
     for (int i = begin; i < end; i += W) {
-        int32_t index[W];
-        for (int l = 0; l < W; ++l) index[l] = i + l;
-        F joints, unused, anisotropy, q[4];
-        M::load(motion, i, quad_torque, joints);
-        auto jointed = joint_mode(joints).jointed > zero;
-        WideVelocity<F> x = load_velocity<W>(bodies.state.data(), index);
-        Vec3T<F> v = M::load(motion, i, quad_v_ref, unused), w = M::load(motion, i, quad_w_ref, unused);
+        Consecutive<W> c(i);
+        BlockLanes<W> y(bodies, i);
+        BodyBlock& b = y.block;
+        auto jointed = joint_mode(y.get(b.joints)).jointed > zero;
+        WideVelocity<F> x = load_velocity<W>(bodies.state.data(), c.index);
+        Vec3T<F> v = y.get(b.v_ref), w = y.get(b.w_ref);
         Vec3T<F> added_v = select(jointed, x.v - v, zero_vector<F>()),
                  added_w = select(jointed, x.w - w, zero_vector<F>());
         if (what == Booking::contacts_warm) {
-            M::store(motion, i, quad_dv, added_v, zero);
-            M::store(motion, i, quad_dw, added_w, zero);
+            y.put(b.dv, added_v);
+            y.put(b.dw, added_w);
             continue;
         }
         if (what == Booking::joints_solved) {
-            added_v = select(jointed, added_v - M::load(motion, i, quad_dv, unused), zero_vector<F>());
-            added_w = select(jointed, added_w - M::load(motion, i, quad_dw, unused), zero_vector<F>());
+            added_v = select(jointed, added_v - y.get(b.dv), zero_vector<F>());
+            added_w = select(jointed, added_w - y.get(b.dw), zero_vector<F>());
         }
-        Vec3T<F> dp, inertia = M::load(motion, i, quad_inertia, unused), L = M::load(motion, i, quad_L, anisotropy);
+        Vec3T<F> dp;
         QuatT<F> dq;
-        load_displacement<W>(bodies.state.data(), index, dp, dq);
-        load4<W>(floats_of(motion), i, M::stride, 4 * quad_q0, q);
-        L = L + apply_principal(multiply(dq, QuatT<F>{q[0], q[1], q[2], q[3]}), inertia, added_w);
-        M::store(motion, i, quad_L, L, anisotropy);
-        M::store(motion, i, quad_v_ref, v + added_v, zero);
-        M::store(motion, i, quad_w_ref, w + added_w, zero);
+        load_displacement<W>(bodies.state.data(), c.index, dp, dq);
+        y.put(b.L, y.get(b.L) + apply_principal(multiply(dq, y.get(b.q0)), y.get(b.inertia), added_w));
+        y.put(b.v_ref, v + added_v);
+        y.put(b.w_ref, w + added_w);
     }
 }

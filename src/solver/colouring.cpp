@@ -46,6 +46,11 @@ void ColourSorter::end() {
 
 void ColourSchedule::build(const ContactRecord* records, const uint32_t* list, int count, const SolverBodies& bodies,
                            const SolverKernels& kernels, const SolverKernels& scalar_kernels) {
+    groups.clear();
+    colour_ends.clear();
+    first_overflow_group = overflow = 0;
+    rows.resize_unset(0);
+    if (count == 0) return;
     sorter_.begin(bodies.count, count, contact_classes);
     for (int i = 0; i < count; ++i) {
         const ContactRecord& r = records[list[i]];
@@ -56,8 +61,6 @@ void ColourSchedule::build(const ContactRecord* records, const uint32_t* list, i
 
     // Groups in solving order with their place in `order`.
     order.resize_unset(static_cast<size_t>(count));
-    groups.clear();
-    colour_ends.clear();
     size_t bytes = 0;
     int last_colour = -1;
     first_overflow_group = -1;

@@ -9,33 +9,66 @@
 // linear and angular momentum are conserved together. Separations follow the bodies' displacement and rotation, but the
 // point of a swept surface (ball, capsule, side of a cylinder) does not turn with its body, only its core point does.
 
+//
+// Rows work on changes of velocity since the start of the step. What the velocities then contribute is a constant of the
+// row but for the arms' motion, so it is kept in the row and not gathered in every pass.
+
+// Members that only rows of several points have.
+template <class F, int P>
+struct PatchTurn {
+    Vec3T<F> start_spin;  // relative angular velocity at the start of the step
+    F shift[2];           // the separations' change per u, per v
+    F coupling[P == 4 ? 6 : 1];  // n_i M^-1 n_j: 10 20 21 30 31 32
+};
+template <class F>
+struct PatchTurn<F, 1> {};
+template <class F, int P>
+struct PatchPoint {
+    F u, v;        // place along t1, t2 from the centre
+    F separation;  // at the start of the step
+    F impulse;     // accumulated normal impulse lambda
+    F mass;        // 1 / (n M^-1 n)
+};
+template <class F>
+struct PatchPoint<F, 1> {
+    F separation, impulse, mass;
+};
+template <class F, int P>
+struct PatchFriction {
+    F mass[6];            // inverse of the block of t1, t2 and twist: 11 12 13 22 23 33
+    F tangent[2], twist;  // impulses
+};
+template <class F>
+struct PatchFriction<F, 1> {
+    F mass[3];  // 11 12 22
+    F tangent[2];
+};
+
 template <int W, int P>
 struct alignas(64) ContactRow {
     using F = Wide<float, W>;
-    int32_t a[W], b[W];
-    Vec3T<F> n, t1;   // normal, first tangent; the second is n x t1
-    Vec3T<F> ra, rb;  // arms of the centre at the start of the step
+    int32_t a[W], b[W];  // eight times the body's index: the place of its inertia in floats, half that of its state
+    // Read by both passes; where a line says so, written by relax for the solve of the next substep.
+    Vec3T<F> n, t1;           // normal, first tangent; the second is n x t1
+    Vec3T<F> lever_a, lever_b;  // arm x n; by relax
+    F start_approach;         // relative normal velocity of the centre at the start of the step, with these arms; by relax
+    F shift;                  // the separations' change since the start of the step, at the centre; by relax
+    F push_speed;             // fastest that overlap is undone
+    F bounce_speed;           // -1, or hugely negative where e = 0: times a speed, the approach that only impacts handle
+    PatchPoint<F, P> p[P];
+    [[no_unique_address]] PatchTurn<F, P> turn;
+    // Read by relax alone.
+    Vec3T<F> ra, rb;      // arms of the centre at the start of the step
     F follow, radius_a, radius_b;
-    struct Point {
-        F u, v;        // place along t1, t2 from the centre
-        F separation;  // at the start of the step
-        F impulse;     // accumulated normal impulse lambda
-        F mass;        // 1 / (n M^-1 n)
-    } p[P];
-    F coupling[P == 4 ? 6 : 1];  // n_i M^-1 n_j: 10 20 21 30 31 32
-    Vec3T<F> moved;              // displacement of B relative to A since the start of the step
-    F shift[3];                  // the separations' change: at the centre, per u, per v
+    Vec3T<F> start_slip;  // relative velocity of the centre at the start of the step
+    Vec3T<F> start_turn;  // angular velocity then of the bodies whose arms move, weighted by how much they do
     F static_friction, dynamic_friction;
-    F friction_mass[6];   // inverse of the block of t1, t2 and twist: 11 12 13 22 23 33
-    F tangent[2], twist;  // friction impulses
-    F push_speed;         // fastest that overlap is undone
-    F bounce_speed;       // approach speed from which the impact stage alone handles the point; huge where e = 0
+    PatchFriction<F, P> friction;
 };
 
 struct BodyArrays {
     BodyState* state;
     const BodyInertia* inertia;
-    const BodyStart* start;
 };
 
 // Changes of velocity since the start of the step, or the velocities then.
@@ -81,6 +114,33 @@ LENDULET_FORCE_INLINE void load_displacement(const BodyState* s, const int32_t* 
     dp = {p[0], p[1], p[2]};
     dq = {q[0], q[1], q[2], q[3]};
 }
+// The same for the places that contact rows keep.
+template <int W>
+LENDULET_FORCE_INLINE WideVelocity<Wide<float, W>> load_velocity_at(const BodyState* s, const int32_t* place) {
+    Wide<float, W> p[8];
+    gather8<W>(floats_of(s), place, 2, 0, p);
+    return {{p[0], p[1], p[2]}, {p[4], p[5], p[6]}, p[3], p[7]};
+}
+template <int W>
+LENDULET_FORCE_INLINE void store_velocity_at(BodyState* s, const int32_t* place,
+                                             const WideVelocity<Wide<float, W>>& x) {
+    Wide<float, W> p[8] = {x.v.x, x.v.y, x.v.z, x.inverse_mass, x.w.x, x.w.y, x.w.z, x.unused};
+    scatter8<W>(floats_of(s), place, 2, 0, p);
+}
+template <int W>
+LENDULET_FORCE_INLINE SymMat3T<Wide<float, W>> load_inverse_inertia_at(const BodyInertia* s, const int32_t* place) {
+    Wide<float, W> p[8];
+    gather8<W>(floats_of(s), place, 1, 0, p);
+    return {p[0], p[1], p[2], p[3], p[4], p[5]};
+}
+template <int W>
+LENDULET_FORCE_INLINE void load_displacement_at(const BodyState* s, const int32_t* place, Vec3T<Wide<float, W>>& dp,
+                                                QuatT<Wide<float, W>>& dq) {
+    Wide<float, W> p[8];
+    gather8<W>(floats_of(s), place, 2, 8, p);
+    dp = {p[0], p[1], p[2]};
+    dq = {p[4], p[5], p[6], p[7]};
+}
 // R(dq)^T n - n, without the cancellation of computing the rotated vector first.
 template <class F>
 LENDULET_FORCE_INLINE Vec3T<F> turned_back(QuatT<F> dq, Vec3T<F> n) {
@@ -108,10 +168,14 @@ LENDULET_FORCE_INLINE void prepare_normals(ContactRow<W, P>& c, const SymMat3T<W
     F k00 = inverse_masses + dot(aA, IaA) + dot(aB, IbB), k01 = dot(arms, minus_t2), k02 = dot(arms, c.t1);
     F k11 = dot(minus_t2, I1), k12 = dot(c.t1, I1), k22 = dot(c.t1, I2);
     for (int j = 0; j < P; ++j) {
-        F u = c.p[j].u, v = c.p[j].v;
-        F h0 = k00 + u * k01 + v * k02, h1 = k01 + u * k11 + v * k12, h2 = k02 + u * k12 + v * k22;
-        c.p[j].mass = inverse_or_zero(h0 + u * h1 + v * h2);
-        for (int i = 0; i < j; ++i) c.coupling[j * (j - 1) / 2 + i] = h0 + c.p[i].u * h1 + c.p[i].v * h2;
+        if constexpr (P == 1) {
+            c.p[j].mass = inverse_or_zero(k00);
+        } else {
+            F u = c.p[j].u, v = c.p[j].v;
+            F h0 = k00 + u * k01 + v * k02, h1 = k01 + u * k11 + v * k12, h2 = k02 + u * k12 + v * k22;
+            c.p[j].mass = inverse_or_zero(h0 + u * h1 + v * h2);
+            for (int i = 0; i < j; ++i) c.turn.coupling[j * (j - 1) / 2 + i] = h0 + c.p[i].u * h1 + c.p[i].v * h2;
+        }
     }
 }
 
@@ -124,11 +188,10 @@ LENDULET_FORCE_INLINE void prepare_friction(ContactRow<W, P>& c, const SymMat3T<
     Vec3T<F> Ia1 = IA * a1, Ib1 = IB * b1;
     F k11 = inverse_masses + dot(a1, Ia1) + dot(b1, Ib1), k12 = dot(a2, Ia1) + dot(b2, Ib1);
     F k22 = inverse_masses + dot(a2, IA * a2) + dot(b2, IB * b2);
-    F* m = c.friction_mass;
+    F* m = c.friction.mass;
     if constexpr (P == 1) {  // one point: nothing resists the twist
         F d = inverse_or_zero(k11 * k22 - k12 * k12);
-        m[0] = d * k22, m[1] = -(d * k12), m[3] = d * k11;
-        m[2] = m[4] = m[5] = splat<F>(0.0f);
+        m[0] = d * k22, m[1] = -(d * k12), m[2] = d * k11;
     } else {
         Vec3T<F> In = IA * c.n, In2 = IB * c.n;
         F k13 = dot(a1, In) + dot(b1, In2), k23 = dot(a2, In) + dot(b2, In2), k33 = dot(c.n, In) + dot(c.n, In2);
@@ -139,38 +202,62 @@ LENDULET_FORCE_INLINE void prepare_friction(ContactRow<W, P>& c, const SymMat3T<
     }
 }
 
+// One record a lane, as vectors of quads.
+template <int W>
+struct RecordQuads {
+    using F = Wide<float, W>;
+    static constexpr int stride = sizeof(ContactRecord) / sizeof(float);
+    const float* base;
+    int32_t index[W];
+    LENDULET_FORCE_INLINE void load8(int offset, F out[8]) const { gather8<W>(base, index, stride, offset, out); }
+    LENDULET_FORCE_INLINE void load4(int offset, F out[4]) const { gather4<W>(base, index, stride, offset, out); }
+};
+
+// What the velocities at the start of the step contribute to the row's.
+template <int W, int P>
+LENDULET_FORCE_INLINE void prepare_start(ContactRow<W, P>& c, const SolverBodies& bodies, const int32_t* a,
+                                         const int32_t* b) {
+    using F = Wide<float, W>;
+    WideVelocity<F> A0 = load_start<W>(bodies.start.data(), a), B0 = load_start<W>(bodies.start.data(), b);
+    c.start_slip = (B0.v - A0.v) + (cross(B0.w, c.rb) - cross(A0.w, c.ra));
+    c.start_turn = c.follow * A0.w + (splat<F>(1.0f) - c.follow) * B0.w;
+    c.start_approach = dot(c.n, c.start_slip);
+    if constexpr (P > 1) c.turn.start_spin = B0.w - A0.w;
+}
+
 template <int W, int P>
 LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& group, const ContactRecord* records,
                                        const SolverBodies& bodies, int first) {
     using F = Wide<float, W>;
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f), half = splat<F>(0.5f);
     int live = group.count - first < W ? group.count - first : W;
-    int32_t index[W];
+    RecordQuads<W> record{floats_of(records), {}};
+    int32_t body_a[W], body_b[W];
     for (int l = 0; l < W; ++l) {
-        index[l] = static_cast<int32_t>(group.order[first + (l < live ? l : 0)]);
-        c.a[l] = l < live ? records[index[l]].body_a : group.filler;
-        c.b[l] = l < live ? records[index[l]].body_b : group.filler;
+        int32_t i = static_cast<int32_t>(group.order[first + (l < live ? l : 0)]);
+        record.index[l] = i;
+        body_a[l] = l < live ? records[i].body_a : group.filler;
+        body_b[l] = l < live ? records[i].body_b : group.filler;
+        c.a[l] = 8 * body_a[l];
+        c.b[l] = 8 * body_b[l];
     }
-    const float* base = floats_of(records);
-    constexpr int stride = sizeof(ContactRecord) / sizeof(float);
-    F normal[4], impulse[4], friction[4], ints[4], surface[4], offset[4], point[P][4];
-    gather4<W>(base, index, stride, 0, normal);
-    gather4<W>(base, index, stride, 4, impulse);
-    gather4<W>(base, index, stride, 8, friction);
-    gather4<W>(base, index, stride, 12, ints);
-    for (int j = 0; j < P; ++j) gather4<W>(base, index, stride, 16 + 4 * j, point[j]);
-    gather4<W>(base, index, stride, 32, surface);
-    gather4<W>(base, index, stride, 36, offset);
+    F head[8], friction[8], point[P > 1 ? P : 2][4], tail[8];  // quads 0 1, 2 3, 4 .. 7, 8 9
+    record.load8(0, head);
+    record.load8(8, friction);
+    if constexpr (P == 1) record.load4(16, point[0]);
+    else
+        for (int j = 0; j < P; j += 2) record.load8(16 + 4 * j, point[j]);
+    record.load8(32, tail);
 
-    c.n = {normal[0], normal[1], normal[2]};
+    c.n = {head[0], head[1], head[2]};
     auto steep = absolute(c.n.x) > half;
     Vec3T<F> t = select(steep, Vec3T<F>{c.n.y, -c.n.x, zero}, Vec3T<F>{zero, c.n.z, -c.n.y});
     c.t1 = (one / square_root(dot(t, t))) * t;
-    c.static_friction = normal[3];
-    c.dynamic_friction = ints[3];
-    c.radius_a = surface[0], c.radius_b = surface[1], c.follow = surface[2];
-    c.bounce_speed = select(surface[3] > zero, splat<F>(-1.0f), splat<F>(-1e30f));
-    c.push_speed = offset[3];
+    c.static_friction = head[3];
+    c.dynamic_friction = friction[7];
+    c.radius_a = tail[0], c.radius_b = tail[1], c.follow = tail[2];
+    c.bounce_speed = select(tail[3] > zero, splat<F>(-1.0f), splat<F>(-1e30f));
+    c.push_speed = tail[7];
 
     // The centre of the points, on the surface of the body that they ride on.
     Vec3T<F> sum = zero_vector<F>();
@@ -183,32 +270,38 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     }
     F mean = one / maximum(weight, one);
     c.ra = mean * sum + ((c.follow - half) * (mean * gap)) * c.n;
-    c.rb = c.ra - Vec3T<F>{offset[0], offset[1], offset[2]};
+    c.rb = c.ra - Vec3T<F>{tail[4], tail[5], tail[6]};
+    c.lever_a = cross(c.ra, c.n);
+    c.lever_b = cross(c.rb, c.n);
 
     Vec3T<F> t2 = cross(c.n, c.t1);
     for (int j = 0; j < P; ++j) {
-        Vec3T<F> d = Vec3T<F>{point[j][0], point[j][1], point[j][2]} - c.ra;
-        c.p[j].u = P == 1 ? zero : dot(d, c.t1);
-        c.p[j].v = P == 1 ? zero : dot(d, t2);
+        if constexpr (P > 1) {
+            Vec3T<F> d = Vec3T<F>{point[j][0], point[j][1], point[j][2]} - c.ra;
+            c.p[j].u = dot(d, c.t1);
+            c.p[j].v = dot(d, t2);
+        }
         c.p[j].separation = point[j][3];
-        c.p[j].impulse = impulse[j];
+        c.p[j].impulse = head[4 + j];
     }
-    WideVelocity<F> A = load_velocity<W>(bodies.state.data(), c.a), B = load_velocity<W>(bodies.state.data(), c.b);
-    SymMat3T<F> IA = load_inverse_inertia<W>(bodies.inertia.data(), c.a);
-    SymMat3T<F> IB = load_inverse_inertia<W>(bodies.inertia.data(), c.b);
+    c.shift = zero;
+    if constexpr (P > 1) c.turn.shift[0] = c.turn.shift[1] = zero;
+    prepare_start<W, P>(c, bodies, body_a, body_b);
+    WideVelocity<F> A = load_velocity_at<W>(bodies.state.data(), c.a), B = load_velocity_at<W>(bodies.state.data(), c.b);
+    SymMat3T<F> IA = load_inverse_inertia_at<W>(bodies.inertia.data(), c.a);
+    SymMat3T<F> IB = load_inverse_inertia_at<W>(bodies.inertia.data(), c.b);
     F inverse_masses = A.inverse_mass + B.inverse_mass;
     prepare_normals<W, P>(c, IA, IB, inverse_masses);
     prepare_friction<W, P>(c, IA, IB, inverse_masses);
     Vec3T<F> f{friction[0], friction[1], friction[2]};
-    c.tangent[0] = dot(f, c.t1);
-    c.tangent[1] = dot(f, t2);
-    c.twist = friction[3];
-    c.moved = zero_vector<F>();
-    for (F& s : c.shift) s = zero;
+    c.friction.tangent[0] = dot(f, c.t1);
+    c.friction.tangent[1] = dot(f, t2);
+    if constexpr (P > 1) c.friction.twist = friction[3];
     for (int l = live; l < W; ++l) {  // empty lanes never push
         for (int j = 0; j < P; ++j) set_lane(c.p[j].impulse, l, 0.0f), set_lane(c.p[j].mass, l, 0.0f);
-        set_lane(c.tangent[0], l, 0.0f), set_lane(c.tangent[1], l, 0.0f), set_lane(c.twist, l, 0.0f);
-        for (F& m : c.friction_mass) set_lane(m, l, 0.0f);
+        set_lane(c.friction.tangent[0], l, 0.0f), set_lane(c.friction.tangent[1], l, 0.0f);
+        if constexpr (P > 1) set_lane(c.friction.twist, l, 0.0f);
+        for (F& m : c.friction.mass) set_lane(m, l, 0.0f);
     }
 }
 
@@ -227,11 +320,13 @@ enum class Pass { warm_start, solve, relax };
 // coefficient otherwise (thesis 3.3.4 with THESIS-NOTES). Returns the impulse on B and the angular impulse about n.
 template <int W, int P>
 LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float, W>> t2, Vec3T<Wide<float, W>> slip,
-                                          Wide<float, W> spin, Vec3T<Wide<float, W>>& linear,
+                                          Vec3T<Wide<float, W>> spin, Vec3T<Wide<float, W>>& linear,
                                           Vec3T<Wide<float, W>>& angular) {
     using F = Wide<float, W>;
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
-    F total = c.p[0].impulse, lever = zero;
+    F total = c.p[0].impulse, lever = zero, twist = zero;
+    F x = dot(slip, c.t1), y = dot(slip, t2), f1, f2, ft = zero;
+    const F* m = c.friction.mass;
     if constexpr (P > 1) {
         lever = zero;
         total = zero;
@@ -239,45 +334,128 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
             total = total + c.p[j].impulse;
             lever = lever + c.p[j].impulse * square_root(c.p[j].u * c.p[j].u + c.p[j].v * c.p[j].v);
         }
+        twist = dot(c.n, spin);
+        f1 = c.friction.tangent[0] - (m[0] * x + m[1] * y + m[2] * twist);
+        f2 = c.friction.tangent[1] - (m[1] * x + m[3] * y + m[4] * twist);
+        ft = c.friction.twist - (m[2] * x + m[4] * y + m[5] * twist);
+    } else {
+        f1 = c.friction.tangent[0] - (m[0] * x + m[1] * y);
+        f2 = c.friction.tangent[1] - (m[1] * x + m[2] * y);
     }
-    const F* m = c.friction_mass;
-    F x = dot(slip, c.t1), y = dot(slip, t2);
-    F f1 = c.tangent[0] - (m[0] * x + m[1] * y + m[2] * spin);
-    F f2 = c.tangent[1] - (m[1] * x + m[3] * y + m[4] * spin);
     F sticking = c.static_friction * total, sliding = c.dynamic_friction * total;
     F size2 = f1 * f1 + f2 * f2;
     F scale = select(size2 > sticking * sticking, sliding / maximum(square_root(size2), splat<F>(1e-30f)), one);
     f1 = scale * f1;
     f2 = scale * f2;
-    linear = (f1 - c.tangent[0]) * c.t1 + (f2 - c.tangent[1]) * t2;
-    c.tangent[0] = f1;
-    c.tangent[1] = f2;
+    linear = (f1 - c.friction.tangent[0]) * c.t1 + (f2 - c.friction.tangent[1]) * t2;
+    c.friction.tangent[0] = f1;
+    c.friction.tangent[1] = f2;
     angular = zero_vector<F>();
     if constexpr (P > 1) {
-        F ft = c.twist - (m[2] * x + m[4] * y + m[5] * spin);
         F hold = c.static_friction * lever, slide = c.dynamic_friction * lever;
         ft = select(absolute(ft) > hold, select(ft > zero, slide, zero - slide), ft);
-        angular = (ft - c.twist) * c.n;
-        c.twist = ft;
+        angular = (ft - c.friction.twist) * c.n;
+        c.friction.twist = ft;
     }
 }
 
-// Separations since the start of the step, from the two bodies' displacements.
+// Arms of the centre now, and the relative velocity there that was left from the start of the step.
+template <class F>
+struct MovedArms {
+    Vec3T<F> ra, rb, start_slip;
+};
+
+// Separations, levers and arms from the two bodies' displacements since the start of the step.
 template <int W, int P>
-LENDULET_FORCE_INLINE void update_displacement(ContactRow<W, P>& c, const BodyState* states) {
+LENDULET_FORCE_INLINE MovedArms<Wide<float, W>> update_displacement(ContactRow<W, P>& c, const BodyState* states,
+                                                                    Vec3T<Wide<float, W>> t2) {
     using F = Wide<float, W>;
     Vec3T<F> dpa, dpb;
     QuatT<F> dqa, dqb;
-    load_displacement<W>(states, c.a, dpa, dqa);
-    load_displacement<W>(states, c.b, dpb, dqb);
-    c.moved = dpb - dpa;
-    Vec3T<F> ea = turned_back(dqa, c.n), eb = turned_back(dqb, c.n);
-    c.shift[0] = dot(c.n, c.moved) + dot(eb, c.rb + c.radius_b * c.n) - dot(ea, c.ra - c.radius_a * c.n);
+    load_displacement_at<W>(states, c.a, dpa, dqa);
+    load_displacement_at<W>(states, c.b, dpb, dqb);
+    Vec3T<F> moved = dpb - dpa, ea = turned_back(dqa, c.n), eb = turned_back(dqb, c.n);
+    c.shift = dot(c.n, moved) + dot(eb, c.rb + c.radius_b * c.n) - dot(ea, c.ra - c.radius_a * c.n);
     if constexpr (P > 1) {
         Vec3T<F> e = eb - ea;
-        c.shift[1] = dot(e, c.t1);
-        c.shift[2] = dot(e, cross(c.n, c.t1));
+        c.turn.shift[0] = dot(e, c.t1);
+        c.turn.shift[1] = dot(e, t2);
     }
+    MovedArms<F> now{c.ra + c.follow * moved, c.rb - (splat<F>(1.0f) - c.follow) * moved,
+                     c.start_slip - cross(c.start_turn, moved)};
+    c.lever_a = cross(now.ra, c.n);
+    c.lever_b = cross(now.rb, c.n);
+    c.start_approach = dot(c.n, now.start_slip);
+    return now;
+}
+
+// One sweep over the points; returns what it added to the impulses: `biased` with the terms that undo overlap.
+template <int W, int P, bool biased>
+LENDULET_FORCE_INLINE void sweep_normals(ContactRow<W, P>& c, const WideVelocity<Wide<float, W>>& A,
+                                         const WideVelocity<Wide<float, W>>& B, Vec3T<Wide<float, W>> t2,
+                                         const SubstepConstants& k, Wide<float, W> change[P]) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
+    F inverse_h = splat<F>(k.inverse_h), keep = splat<F>(biased ? 1.0f - k.leak : 1.0f);
+    F rate = splat<F>(biased ? k.bias_rate : 0.0f), push = zero - c.push_speed;
+    F bounce = splat<F>(k.bounce_speed) * c.bounce_speed;
+    F g0 = (c.start_approach + dot(c.n, B.v - A.v)) + (dot(c.lever_b, B.w) - dot(c.lever_a, A.w));
+    F g1 = zero, g2 = zero;
+    if constexpr (P > 1) {
+        Vec3T<F> spin = c.turn.start_spin + (B.w - A.w);
+        g1 = zero - dot(spin, t2), g2 = dot(spin, c.t1);
+    }
+    for (int j = 0; j < P; ++j) {
+        auto& p = c.p[j];
+        F s = p.separation + c.shift, vn = g0;
+        if constexpr (P > 1) {
+            s = s + (p.u * c.turn.shift[0] + p.v * c.turn.shift[1]);
+            vn = vn + (p.u * g1 + p.v * g2);
+            for (int i = 0; i < j; ++i) vn = vn + c.turn.coupling[j * (j - 1) / 2 + i] * change[i];
+        }
+        auto apart = s > zero;
+        F kept = p.impulse, bias;
+        if constexpr (biased) {
+            bias = select(apart, s * inverse_h, maximum(rate * s, push));
+            kept = select(apart, one, keep) * kept;
+        } else {
+            bias = select(apart, s * inverse_h, zero);
+        }
+        F next = maximum((kept - p.mass * bias) - p.mass * vn, zero);
+        next = select(vn < bounce, zero, next);  // left to the impact stage, which knows the time of impact
+        change[j] = next - p.impulse;
+        p.impulse = next;
+    }
+}
+
+// Adds impulses of the points along n to the bodies.
+template <int W, int P>
+LENDULET_FORCE_INLINE void apply_normals(const ContactRow<W, P>& c, WideVelocity<Wide<float, W>>& A,
+                                         WideVelocity<Wide<float, W>>& B, const SymMat3T<Wide<float, W>>& IA,
+                                         const SymMat3T<Wide<float, W>>& IB, Vec3T<Wide<float, W>> t2,
+                                         const Wide<float, W> change[P]) {
+    using F = Wide<float, W>;
+    F total = change[0];
+    Vec3T<F> turn_a, turn_b;
+    if constexpr (P > 1) {
+        F moment1 = change[0] * c.p[0].u, moment2 = change[0] * c.p[0].v;
+        for (int j = 1; j < P; ++j) {
+            total = total + change[j];
+            moment1 = moment1 + change[j] * c.p[j].u;
+            moment2 = moment2 + change[j] * c.p[j].v;
+        }
+        Vec3T<F> turn = moment2 * c.t1 - moment1 * t2;
+        turn_a = total * c.lever_a + turn;
+        turn_b = total * c.lever_b + turn;
+    } else {
+        turn_a = total * c.lever_a;
+        turn_b = total * c.lever_b;
+    }
+    Vec3T<F> push = total * c.n;
+    B.v = B.v + B.inverse_mass * push;
+    B.w = B.w + IB * turn_b;
+    A.v = A.v - A.inverse_mass * push;
+    A.w = A.w - IA * turn_a;
 }
 
 // `fixed_a` (A is not moved by constraints) and k.moved are the same for all rows of a loop: branches cost nothing
@@ -286,85 +464,49 @@ template <int W, int P, Pass pass>
 LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& bodies, const SubstepConstants& k,
                                         bool fixed_a) {
     using F = Wide<float, W>;
-    const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
     BodyState* states = bodies.state;
-    WideVelocity<F> A = load_velocity<W>(states, c.a), B = load_velocity<W>(states, c.b);
-    SymMat3T<F> IA{}, IB = load_inverse_inertia<W>(bodies.inertia, c.b);
-    if (!fixed_a) IA = load_inverse_inertia<W>(bodies.inertia, c.a);
-    WideVelocity<F> A0 = load_start<W>(bodies.start, c.a), B0 = load_start<W>(bodies.start, c.b);
-    if (pass == Pass::relax || (pass == Pass::solve && k.moved)) update_displacement<W, P>(c, states);
-
-    Vec3T<F> t2 = cross(c.n, c.t1);
-    Vec3T<F> ra = c.ra + c.follow * c.moved, rb = c.rb - (one - c.follow) * c.moved;
-    Vec3T<F> aA = cross(ra, c.n), aB = cross(rb, c.n);
+    WideVelocity<F> A{}, B = load_velocity_at<W>(states, c.b);
+    SymMat3T<F> IA{}, IB = load_inverse_inertia_at<W>(bodies.inertia, c.b);
+    if (!fixed_a) {
+        A = load_velocity_at<W>(states, c.a);
+        IA = load_inverse_inertia_at<W>(bodies.inertia, c.a);
+    }
+    Vec3T<F> t2 = cross(c.n, c.t1), linear, angular;
     F change[P];
     if constexpr (pass == Pass::warm_start) {
         for (int j = 0; j < P; ++j) change[j] = c.p[j].impulse;
+        apply_normals<W, P>(c, A, B, IA, IB, t2, change);
+        linear = c.friction.tangent[0] * c.t1 + c.friction.tangent[1] * t2;
+        angular = zero_vector<F>();
+        if constexpr (P > 1) angular = c.friction.twist * c.n;
+        B.w = B.w + IB * (cross(c.rb, linear) + angular);
+        A.w = A.w - IA * (cross(c.ra, linear) + angular);
+    } else if constexpr (pass == Pass::solve) {
+        if (k.moved) update_displacement<W, P>(c, states, t2);
+        sweep_normals<W, P, true>(c, A, B, t2, k, change);
+        apply_normals<W, P>(c, A, B, IA, IB, t2, change);
     } else {
-        constexpr bool biased = pass != Pass::relax;
-        F inverse_h = splat<F>(k.inverse_h), keep = splat<F>(biased ? 1.0f - k.leak : 1.0f);
-        F rate = splat<F>(biased ? k.bias_rate : 0.0f), push = zero - c.push_speed;
-        F bounce = splat<F>(k.bounce_speed) * c.bounce_speed;
-        Vec3T<F> wa = A0.w + A.w, wb = B0.w + B.w, spin = wb - wa;
-        F g0 = dot(c.n, (B0.v - A0.v) + (B.v - A.v)) + (dot(aB, wb) - dot(aA, wa));
-        F g1 = zero - dot(spin, t2), g2 = dot(spin, c.t1);
-        for (int j = 0; j < P; ++j) {
-            auto& p = c.p[j];
-            F s = p.separation + c.shift[0];
-            F vn = g0;
-            if constexpr (P > 1) {
-                s = s + p.u * c.shift[1] + p.v * c.shift[2];
-                vn = vn + (p.u * g1 + p.v * g2);
-            }
-            auto apart = s > zero;
-            F bias = select(apart, s * inverse_h, maximum(rate * s, push));
-            F kept = select(apart, one, keep) * p.impulse;
-            for (int i = 0; i < j; ++i) vn = vn + c.coupling[j * (j - 1) / 2 + i] * change[i];
-            F next = maximum(kept - p.mass * (vn + bias), zero);
-            next = select(vn < bounce, zero, next);  // left to the impact stage, which knows the time of impact
-            change[j] = next - p.impulse;
-            p.impulse = next;
-        }
+        MovedArms<F> now = update_displacement<W, P>(c, states, t2);
+        sweep_normals<W, P, false>(c, A, B, t2, k, change);
+        apply_normals<W, P>(c, A, B, IA, IB, t2, change);
+        Vec3T<F> slip = (now.start_slip + (B.v - A.v)) + (cross(B.w, now.rb) - cross(A.w, now.ra)), spin{};
+        if constexpr (P > 1) spin = c.turn.start_spin + (B.w - A.w);
+        solve_friction<W, P>(c, t2, slip, spin, linear, angular);
+        B.w = B.w + IB * (cross(now.rb, linear) + angular);
+        A.w = A.w - IA * (cross(now.ra, linear) + angular);
     }
-    F total = change[0];
-    Vec3T<F> turn = zero_vector<F>();
-    if constexpr (P > 1) {
-        F moment1 = change[0] * c.p[0].u, moment2 = change[0] * c.p[0].v;
-        for (int j = 1; j < P; ++j) {
-            total = total + change[j];
-            moment1 = moment1 + change[j] * c.p[j].u;
-            moment2 = moment2 + change[j] * c.p[j].v;
-        }
-        turn = moment2 * c.t1 - moment1 * t2;
-    }
-    Vec3T<F> push = total * c.n;
-    B.v = B.v + B.inverse_mass * push;
-    B.w = B.w + IB * (total * aB + turn);
-    A.v = A.v - A.inverse_mass * push;
-    A.w = A.w - IA * (total * aA + turn);
-    if constexpr (pass == Pass::relax || pass == Pass::warm_start) {
-        Vec3T<F> linear, angular;
-        if constexpr (pass == Pass::relax) {
-            Vec3T<F> wa = A0.w + A.w, wb = B0.w + B.w;
-            Vec3T<F> slip = ((B0.v - A0.v) + (B.v - A.v)) + (cross(wb, rb) - cross(wa, ra));
-            solve_friction<W, P>(c, t2, slip, dot(c.n, wb - wa), linear, angular);
-        } else {
-            linear = c.tangent[0] * c.t1 + c.tangent[1] * t2;
-            angular = c.twist * c.n;
-        }
+    if constexpr (pass != Pass::solve) {
         B.v = B.v + B.inverse_mass * linear;
-        B.w = B.w + IB * (cross(rb, linear) + angular);
         A.v = A.v - A.inverse_mass * linear;
-        A.w = A.w - IA * (cross(ra, linear) + angular);
     }
-    store_velocity<W>(states, c.b, B);
-    if (!fixed_a) store_velocity<W>(states, c.a, A);
+    store_velocity_at<W>(states, c.b, B);
+    if (!fixed_a) store_velocity_at<W>(states, c.a, A);
 }
 
 template <int W, int P, Pass pass>
 void run_pass(const ContactGroup& g, SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
     auto* rows = reinterpret_cast<ContactRow<W, P>*>(g.rows);
-    const BodyArrays arrays{bodies.state.data(), bodies.inertia.data(), bodies.start.data()};
+    const BodyArrays arrays{bodies.state.data(), bodies.inertia.data()};
     for (int i = begin; i < end; ++i) contact_pass<W, P, pass>(rows[i], arrays, k, g.fixed_a);
 }
 
@@ -373,25 +515,34 @@ void run_pass(const ContactGroup& g, SolverBodies& bodies, const SubstepConstant
 template <int W, int P>
 void store_rows(const ContactGroup& g, ContactRecord* records, int begin, int end) {
     using F = Wide<float, W>;
+    constexpr int stride = sizeof(ContactRecord) / sizeof(float);
+    const F zero = splat<F>(0.0f);
     auto* rows = reinterpret_cast<const ContactRow<W, P>*>(g.rows);
     for (int i = begin; i < end; ++i) {
         const ContactRow<W, P>& c = rows[i];
-        Vec3T<F> t2 = cross(c.n, c.t1), f = c.tangent[0] * c.t1 + c.tangent[1] * t2;
-        int live = g.count - i * W < W ? g.count - i * W : W;
-        for (int l = 0; l < live; ++l) {
-            ContactRecord& r = records[g.order[i * W + l]];
-            for (int j = 0; j < P; ++j) {
-                r.normal_impulse[j] = lane(c.p[j].impulse, l);
-                float s = lane(c.p[j].separation, l);
-                if (s < 0.1f * far_separation)
-                    s += lane(c.shift[0], l) + lane(c.p[j].u, l) * lane(c.shift[1], l) +
-                         lane(c.p[j].v, l) * lane(c.shift[2], l);
-                r.points[j].separation = s;
-            }
-            r.friction_impulse[0] = lane(f.x, l);
-            r.friction_impulse[1] = lane(f.y, l);
-            r.friction_impulse[2] = lane(f.z, l);
-            r.twist_impulse = lane(c.twist, l);
+        Vec3T<F> f = c.friction.tangent[0] * c.t1 + c.friction.tangent[1] * cross(c.n, c.t1);
+        F impulses[8] = {zero, zero, zero, zero, f.x, f.y, f.z, zero};
+        float separation[P][W];
+        for (int j = 0; j < P; ++j) {
+            impulses[j] = c.p[j].impulse;
+            F s = c.shift;
+            if constexpr (P > 1) s = s + (c.p[j].u * c.turn.shift[0] + c.p[j].v * c.turn.shift[1]);
+            s = select(c.p[j].separation < splat<F>(0.1f * far_separation), c.p[j].separation + s, c.p[j].separation);
+            store_wide(separation[j], s);
         }
+        if constexpr (P > 1) impulses[7] = c.friction.twist;
+        int live = g.count - i * W < W ? g.count - i * W : W;
+        int32_t index[W];
+        for (int l = 0; l < W; ++l) index[l] = static_cast<int32_t>(g.order[i * W + (l < live ? l : 0)]);
+        if (live == W) {
+            scatter8<W>(floats_of(records), index, stride, 4, impulses);
+        } else {
+            float lanes[8][W];
+            for (int k = 0; k < 8; ++k) store_wide(lanes[k], impulses[k]);
+            for (int l = 0; l < live; ++l)
+                for (int k = 0; k < 8; ++k) floats_of(records)[index[l] * stride + 4 + k] = lanes[k][l];
+        }
+        for (int l = 0; l < live; ++l)
+            for (int j = 0; j < P; ++j) records[index[l]].points[j].separation = separation[j][l];
     }
 }

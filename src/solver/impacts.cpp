@@ -14,12 +14,15 @@ void add(float* p, Vec3 v) { p[0] += v.x, p[1] += v.y, p[2] += v.z; }
 
 struct Side {
     BodyState* state;
-    BodyMotion* motion;
+    BodyBlock* block;
+    int at;  // of the body in its block
     SymMat3 inverse_inertia;
     Vec3 v, w, arm;  // whole velocities
 
     Side(SolverBodies& bodies, int32_t i)
-        : state(&bodies.state[static_cast<size_t>(i)]), motion(&bodies.motion[static_cast<size_t>(i)]) {
+        : state(&bodies.state[static_cast<size_t>(i)]),
+          block(&bodies.blocks[static_cast<size_t>(i / block_bodies)]),
+          at(i % block_bodies) {
         const float* m = bodies.inertia[static_cast<size_t>(i)].inverse;
         inverse_inertia = {m[0], m[1], m[2], m[3], m[4], m[5]};
         const BodyStart& start = bodies.start[static_cast<size_t>(i)];
@@ -28,7 +31,11 @@ struct Side {
     }
     Quat rotation() const { return {state->dq[0], state->dq[1], state->dq[2], state->dq[3]}; }
     bool movable() const { return state->inverse_mass > 0.0f; }
-    Vec3 acceleration() const { return movable() ? load(motion->acceleration) : Vec3{}; }
+    Vec3 acceleration() const {
+        const BodyBlock::Lanes* a = block->acceleration;
+        return movable() ? Vec3{a[0][at], a[1][at], a[2][at]} : Vec3{};
+    }
+    void add_lanes(BodyBlock::Lanes* p, Vec3 d) const { p[0][at] += d.x, p[1][at] += d.y, p[2][at] += d.z; }
     Vec3 velocity() const { return v + cross(w, arm); }
     // T^-1(u), thesis 3.3.2: how much the point's velocity along u changes per unit impulse.
     float effectiveness(Vec3 u) const {
@@ -44,11 +51,11 @@ struct Side {
         add(state->v, dv);
         add(state->w, dw);
         // Not a change that the warm start repeats, nor one that the drift expects to go on.
-        add(motion->v_ref, dv);
-        add(motion->v_start, dv);
-        add(motion->w_ref, dw);
-        add(motion->L_start, dL);
-        add(motion->angular_momentum, dL);
+        add_lanes(block->v_ref, dv);
+        add_lanes(block->v_start, dv);
+        add_lanes(block->w_ref, dw);
+        add_lanes(block->L_start, dL);
+        add_lanes(block->L, dL);
         add(state->dp, -time * dv);
         Vec3 turn = (-0.5f * time) * dw;
         Quat q = rotation();

@@ -71,7 +71,8 @@ struct SolverKernels {
     void (*relax)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*store)(const ContactGroup&, ContactRecord*, int begin, int end);
 
-    // Bodies [begin, end), both multiples of 16.
+    // Bodies [begin, end), both multiples of 16. `begin_step` before the first kick, `settle` after the last relax.
+    void (*begin_step)(SolverBodies&, int begin, int end);
     void (*kick)(SolverBodies&, const SubstepConstants&, bool first, int begin, int end);
     void (*drift)(SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*settle)(SolverBodies&, int begin, int end);

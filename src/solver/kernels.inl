@@ -60,6 +60,7 @@ constexpr SolverKernels make_kernels() {
             pass_group<W, Pass::solve>,
             pass_group<W, Pass::relax>,
             store_group<W>,
+            begin_bodies<W>,
             kick_bodies<W>,
             drift_bodies<W>,
             settle_bodies<W>,

@@ -8,11 +8,12 @@ namespace {
 constexpr int bodies_per_task = 256;    // bodies in a chunk of a parallel loop; a multiple of 16
 constexpr int contacts_per_task = 128;  // manifolds in a chunk, whatever the width
 
-// Calls run(begin, end) on ranges of bodies, aligned to blocks of 16.
+// Calls run(begin, end) on parts of a range of bodies, in whole blocks.
 template <class Run>
-void for_each_body_block(TaskPool& tasks, const SolverBodies& bodies, Run&& run) {
-    int blocks = (bodies.count + 15) / 16;
-    tasks.for_each(blocks, bodies_per_task / 16, [&](int begin, int end, int) { run(begin * 16, end * 16); });
+void for_each_body_block(TaskPool& tasks, BodyRange range, Run&& run) {
+    int first = range.begin / block_bodies, blocks = (range.end - range.begin + block_bodies - 1) / block_bodies;
+    tasks.for_each(blocks, bodies_per_task / block_bodies,
+                   [&](int begin, int end, int) { run((first + begin) * block_bodies, (first + end) * block_bodies); });
 }
 
 }  // namespace
@@ -58,14 +59,16 @@ void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointRecord* 
     joints_.prepare(tasks, bodies, joints, count, contacts, kernels_, scalar_);
 }
 
-void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies,
-                   const ContactRecord* records) {
+void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
+                   BodyRange range) {
+    if (range.begin >= range.end) return;
     SubstepConstants k = substep_constants(settings);
     k.joints = !joints_.empty();
+    for_each_body_block(tasks, range, [&](int begin, int end) { kernels_.begin_step(bodies, begin, end); });
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const bool first = substep == 0;
         k.moved = resolve_impacts(bodies, records, bouncing_.data(), bouncing_.count(), k);
-        for_each_body_block(tasks, bodies, [&](int begin, int end) { kernels_.kick(bodies, k, first, begin, end); });
+        for_each_body_block(tasks, range, [&](int begin, int end) { kernels_.kick(bodies, k, first, begin, end); });
         if (first)
             for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
                 kernels.warm_start(g, bodies, k, begin, end);
@@ -77,13 +80,13 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
         for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
             kernels.solve(g, bodies, k, begin, end);
         });
-        for_each_body_block(tasks, bodies, [&](int begin, int end) { kernels_.drift(bodies, k, begin, end); });
+        for_each_body_block(tasks, range, [&](int begin, int end) { kernels_.drift(bodies, k, begin, end); });
         if (k.joints) joints_.relax(tasks, bodies, k);
         for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
             kernels.relax(g, bodies, k, begin, end);
         });
     }
-    for_each_body_block(tasks, bodies, [&](int begin, int end) { kernels_.settle(bodies, begin, end); });
+    for_each_body_block(tasks, range, [&](int begin, int end) { kernels_.settle(bodies, begin, end); });
 }
 
 void Solver::store(TaskPool& tasks, ContactRecord* records) {

@@ -27,8 +27,8 @@ struct SolverSettings {
 // Share of the overlap that a biased pass undoes in one substep, and of the impulse that it gives up. A stack of n
 // equal boxes sinks by (leak / bias) g h^2 n per face, and stands up to a height of about (0.98 bias / (leak g
 // h^2))^(1/3).
-inline constexpr float contact_bias = 0.1f;
-inline constexpr float contact_leak = 0.1f;
+inline constexpr float contact_bias = 0.3f;
+inline constexpr float contact_leak = 0.15f;
 // Impacts slower than this many times |g| h do not bounce: less than a substep's fall cannot be told from rest.
 inline constexpr float bounce_threshold_substeps = 4.0f;
 
@@ -48,8 +48,12 @@ public:
     // Colours the joints and packs them; after prepare() and with the same contacts, in every step. `joints` must stay
     // until store_joints().
     void prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointRecord* joints, int count, ContactList contacts);
-    // Runs the substeps; bodies move.
-    void solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records);
+    // Runs the substeps; bodies of the range move: all that the contacts and joints given name, and others as well.
+    void solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
+               BodyRange range);
+    void solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records) {
+        solve(tasks, settings, bodies, records, {0, bodies.count});
+    }
     // Writes impulses and final separations back.
     void store(TaskPool& tasks, ContactRecord* records);
     // Writes impulses back into the joints given to prepare_joints().

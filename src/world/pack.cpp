@@ -12,13 +12,22 @@ constexpr int bodies_per_task = 256;
 void put(float* p, Vec3 v) { p[0] = v.x, p[1] = v.y, p[2] = v.z; }
 Vec3 get(const float* p) { return {p[0], p[1], p[2]}; }
 
-void pack_body(WorldData& world, size_t i, float h) {
+// How many substeps of its own a body takes in one of the setting: 1, 2, 4, 8. What is kept from step to step, impulses
+// and changes, is in units of the setting's substep.
+float multiple(const WorldData& world, int32_t solver_body) {
+    int c = 0;
+    while (solver_body >= world.parts[c].bodies.end) ++c;
+    return static_cast<float>(1 << c);
+}
+
+void pack_body(WorldData& world, size_t i, float dt) {
     const BodyStore& bodies = world.bodies;
     uint32_t slot = world.awake[i];
     const BodyInfo& info = bodies.info[slot];
     const BodyMass& mass = bodies.mass[slot];
-    const float dt = h * static_cast<float>(world.config.solver_steps);
-    size_t k = i + reserved_bodies;
+    const float share = 1.0f / multiple(world, info.solver_index);
+    const float h = share * dt / static_cast<float>(world.config.solver_steps);
+    size_t k = static_cast<size_t>(info.solver_index);
     bool dynamic = info.type == BodyType::dynamic;
     BodyStart start{};
     put(start.v, bodies.velocity(slot));
@@ -52,8 +61,8 @@ void pack_body(WorldData& world, size_t i, float h) {
         put(m.angular_momentum, bodies.momenta[slot].L);
         put(m.acceleration, linear.mean * acceleration(world, slot, dt));
         put(m.torque, angular.mean * torque(world, slot, dt));
-        put(m.change_v, bodies.change[slot].v);
-        put(m.change_L, bodies.change[slot].L);
+        put(m.change_v, share * bodies.change[slot].v);
+        put(m.change_L, share * bodies.change[slot].L);
     }
     world.solver_bodies.motion[k] = m;
 }
@@ -70,6 +79,21 @@ void add_displacement(Position& x, Vec3& low, Vec3 dx) {
     Position t = x + y;
     low = (t - x) - y;
     x = t;
+}
+
+// Impulses of contacts with more substeps from units of the setting's substep to those of their own, or back: powers of
+// two, so nothing is rounded.
+void scale_impulses(WorldData& world, int sign) {
+    for (int c = 1; c < substep_classes; ++c) {
+        float factor = sign > 0 ? static_cast<float>(1 << c) : 1.0f / static_cast<float>(1 << c);
+        const SolverPart& part = world.parts[c];
+        for (int i = 0; i < part.contact_count; ++i) {
+            ContactRecord& r = world.records[world.active[static_cast<size_t>(part.first_contact + i)]];
+            for (float& x : r.normal_impulse) x *= factor;
+            for (float& x : r.friction_impulse) x *= factor;
+            r.twist_impulse *= factor;
+        }
+    }
 }
 
 // What a body alone does under the chosen reference integrator.
@@ -93,8 +117,8 @@ void unpack_body(WorldData& world, size_t i, float dt) {
     BodyStore& bodies = world.bodies;
     uint32_t slot = world.awake[i];
     const BodyInfo& info = bodies.info[slot];
-    const BodyState& s = world.solver_bodies.state[i + reserved_bodies];
-    const BodyMotion& m = world.solver_bodies.motion[i + reserved_bodies];
+    const BodyState& s = world.solver_bodies.state[static_cast<size_t>(info.solver_index)];
+    const BodyMotion& m = world.solver_bodies.motion[static_cast<size_t>(info.solver_index)];
     bool dynamic = info.type == BodyType::dynamic;
     if (dynamic && m.free > 0.0f && world.config.integrator != Integrator::momentum) {
         fly(world, slot, dt);
@@ -113,47 +137,84 @@ void unpack_body(WorldData& world, size_t i, float dt) {
         add_momentum(momenta, bodies.mass[slot].mass * get(s.v));
     }
     momenta.L = get(m.angular_momentum);
-    bodies.change[slot] = {get(m.change_v), get(m.change_L)};
+    float substeps = multiple(world, info.solver_index);
+    bodies.change[slot] = {substeps * get(m.change_v), substeps * get(m.change_L)};
 }
 
 }  // namespace
 
-void pack_bodies(WorldData& world, float h) {
+void pack_bodies(WorldData& world, float dt) {
     BodyStore& bodies = world.bodies;
-    world.awake.clear();
+    // Places within the class first, then behind the classes before: each begins a block of its own.
+    int counts[substep_classes] = {};
     for (uint32_t slot : bodies.slots.order()) {
         BodyInfo& info = bodies.info[slot];
         const BodyMomenta& m = bodies.momenta[slot];
         bool packed = info.type == BodyType::dynamic
                           ? !info.asleep
                           : info.type == BodyType::kinematic && length_squared(m.p) + length_squared(m.L) > 0.0f;
-        info.solver_index = packed ? reserved_bodies + world.awake.count() : static_body;
-        if (packed) world.awake.push_back(slot);
+        info.solver_index = packed ? -1 - substep_class(world, slot) : static_body;
+        if (packed) ++counts[-1 - info.solver_index];
     }
-    world.solver_bodies.reset(world.awake.count());
+    int places[substep_classes], firsts[substep_classes], place = reserved_bodies, awake = 0;
+    for (int c = 0; c < substep_classes; ++c) {
+        places[c] = place;
+        firsts[c] = awake;
+        int begin = c == 0 ? 0 : place, end = place + counts[c];
+        place = (end + block_bodies - 1) / block_bodies * block_bodies;
+        awake += counts[c];
+        world.parts[c].bodies = {begin, place};
+    }
+    world.solver_bodies.reset(place - reserved_bodies);
+    world.awake.resize_unset(static_cast<size_t>(awake));
+    for (uint32_t slot : bodies.slots.order()) {
+        int32_t& index = bodies.info[slot].solver_index;
+        if (index >= 0) continue;
+        int c = -1 - index;
+        world.awake[static_cast<size_t>(firsts[c]++)] = slot;
+        index = places[c]++;
+    }
+    for (int c = 0; c < substep_classes; ++c)
+        for (int i = places[c]; i < world.parts[c].bodies.end; ++i) world.solver_bodies.set_at_rest(i);
     world.tasks.for_each(world.awake.count(), bodies_per_task, [&](int begin, int end, int) {
-        for (int i = begin; i < end; ++i) pack_body(world, static_cast<size_t>(i), h);
+        for (int i = begin; i < end; ++i) pack_body(world, static_cast<size_t>(i), dt);
     });
 }
 
 void pack_contacts(WorldData& world) {
-    world.active.clear();
-    for (uint32_t i : world.touching) {
+    // The list by class, stably: most often there is but one.
+    int counts[substep_classes] = {};
+    auto part_of = [&](const ContactRecord& r) {
+        int c = 0;
+        while (r.body_b >= world.parts[c].bodies.end) ++c;
+        return c;
+    };
+    for (uint32_t i : world.active) {
         ContactRecord& r = world.records[i];
-        const ColliderPair& p = world.pairs.now[r.pair];
-        bool flipped = (r.flags & contact_flipped) != 0;
-        uint32_t body_a = world.colliders.info[flipped ? p.b : p.a].body,
-                 body_b = world.colliders.info[flipped ? p.a : p.b].body;
-        const BodyInfo &a = world.bodies.info[body_a], &b = world.bodies.info[body_b];
-        if (b.asleep || b.type != BodyType::dynamic)
-            continue;  // B moves wherever one of them does, and islands wake as one
-        r.body_a = a.solver_index;
-        r.body_b = b.solver_index;
+        r.body_a = world.bodies.info[static_cast<size_t>(r.body_a)].solver_index;
+        r.body_b = world.bodies.info[static_cast<size_t>(r.body_b)].solver_index;
         world.solver_bodies.motion[static_cast<size_t>(r.body_a)].free = 0.0f;
         world.solver_bodies.motion[static_cast<size_t>(r.body_b)].free = 0.0f;
-        world.active.push_back(i);
+        ++counts[part_of(r)];
     }
+    int first = 0;
+    for (int c = 0; c < substep_classes; ++c) {
+        world.parts[c].first_contact = first;
+        world.parts[c].contact_count = counts[c];
+        first += counts[c];
+    }
+    if (counts[0] == first) return;
+    world.unsorted.swap(world.active);
+    world.active.resize_unset(world.unsorted.size());
+    for (int& n : counts) n = 0;
+    for (uint32_t i : world.unsorted) {
+        int c = part_of(world.records[i]);
+        world.active[static_cast<size_t>(world.parts[c].first_contact + counts[c]++)] = i;
+    }
+    scale_impulses(world, -1);
 }
+
+void unpack_contacts(WorldData& world) { scale_impulses(world, 1); }
 
 void unpack_bodies(WorldData& world, float dt, bool forces_end) {
     BodyStore& bodies = world.bodies;

@@ -31,6 +31,18 @@ private:
     Clock::time_point last_ = Clock::now();
 };
 
+void prepare_solvers(WorldData& world) {
+    const ContactRecord* records = world.records.data();
+    for (int c = 0; c < substep_classes; ++c) {
+        const SolverPart& part = world.parts[c];
+        world.solvers[c].prepare(world.tasks, world.solver_bodies, records, world.active.data() + part.first_contact,
+                                 part.contact_count);
+    }
+    world.solvers[0].prepare_joints(world.tasks, world.solver_bodies, world.joint_records.data(),
+                                    world.joint_records.count(),
+                                    {records, world.active.data(), world.parts[0].contact_count});
+}
+
 // `last`: the step is the last part of an update, after which applied forces end.
 void step(WorldData& world, float dt, bool last) {
     TaskPool::Session session(world.tasks);
@@ -49,19 +61,21 @@ void step(WorldData& world, float dt, bool last) {
     clock.lap(Stage::narrow_phase);
     update_islands(world, dt);
     clock.lap(Stage::islands);
-    pack_bodies(world, h);
+    choose_substeps(world, dt);
+    pack_bodies(world, dt);
     pack_contacts(world);
     pack_joints(world, h);
-    world.solver.prepare(world.tasks, world.solver_bodies, world.records.data(), world.active.data(),
-                         world.active.count());
-    world.solver.prepare_joints(world.tasks, world.solver_bodies, world.joint_records.data(),
-                                world.joint_records.count(),
-                                {world.records.data(), world.active.data(), world.active.count()});
+    prepare_solvers(world);
     clock.lap(Stage::prepare);
-    world.solver.solve(world.tasks, settings, world.solver_bodies, world.records.data());
+    for (int c = 0; c < substep_classes; ++c) {
+        SolverSettings s = settings;
+        s.substeps <<= c;
+        world.solvers[c].solve(world.tasks, s, world.solver_bodies, world.records.data(), world.parts[c].bodies);
+    }
     clock.lap(Stage::solve);
-    world.solver.store(world.tasks, world.records.data());
-    world.solver.store_joints(world.tasks);
+    for (Solver& solver : world.solvers) solver.store(world.tasks, world.records.data());
+    world.solvers[0].store_joints(world.tasks);
+    unpack_contacts(world);
     unpack_joints(world, h);
     unpack_bodies(world, dt, last);
     finish_step(world, dt);
@@ -83,12 +97,18 @@ void finish_step(WorldData& world, float dt) {
         for (int j = 0; j < r.point_count; ++j) s.max_penetration = maximum(s.max_penetration, -r.points[j].separation);
         for (int j = 0; j < r.point_count; ++j) s.contact_points += r.points[j].separation <= 0.0f;
     }
-    s.colours = world.solver.colour_count();
-    s.overflow_manifolds = world.solver.overflow();
+    s.colours = s.overflow_manifolds = 0;
+    size_t row_bytes = 0;
+    for (const Solver& solver : world.solvers) {
+        s.colours = s.colours > solver.colour_count() ? s.colours : solver.colour_count();
+        s.overflow_manifolds += solver.overflow();
+        row_bytes += solver.row_bytes();
+    }
     s.joints = world.joints.count();
-    s.bytes_per_body = BodyStore::bytes_per_body() + sizeof(BodyState) + sizeof(BodyInertia) + sizeof(BodyMotion);
+    s.bytes_per_body = BodyStore::bytes_per_body() + sizeof(BodyState) + sizeof(BodyInertia) + sizeof(BodyStart) +
+                       sizeof(BodyMotion) + sizeof(BodyBlock) / block_bodies;
     s.bytes_per_manifold = 2 * sizeof(ContactRecord) + sizeof(ColliderPair) + sizeof(PairCache) +
-                           (world.active.empty() ? 0 : world.solver.row_bytes() / world.active.size());
+                           (world.active.empty() ? 0 : row_bytes / world.active.size());
     world.last_h = dt / static_cast<float>(world.config.solver_steps);
     world.time += dt;
     ++world.steps;

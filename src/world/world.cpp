@@ -70,13 +70,17 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       old_places(&memory),
       touching(&memory),
       active(&memory),
+      unsorted(&memory),
       overlaps(&memory),
       trigger_hits(&memory),
       active_joints(&memory),
       joint_records(&memory),
       awake(&memory),
       solver_bodies(&memory),
-      solver(&memory, settings.width),
+      island_loads(&memory),
+      parts{},
+      solvers{
+          {&memory, settings.width}, {&memory, settings.width}, {&memory, settings.width}, {&memory, settings.width}},
       island_parent(&memory),
       island_still(&memory) {}
 

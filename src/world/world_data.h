@@ -26,6 +26,28 @@ struct OldPlace {
     uint32_t count;
 };
 
+// Islands take 1, 2, 4 or 8 times the substeps of the setting.
+inline constexpr int substep_classes = 4;
+
+// What a body's island carries, see substeps.cpp; sums are with the root.
+struct IslandLoad {
+    uint64_t step;    // one more than the steps before the one that this entry is of
+    uint32_t parent;  // union-find over body slots
+    int contacts;
+    float sinking, buckling;  // greatest load ratio of its contacts, per size and per size cubed
+    float lowest, highest;    // positions along gravity, times gravity
+    uint8_t before;           // class in the step before
+    uint8_t waited;           // steps since when fewer substeps would do
+    uint8_t substeps;         // class
+    bool tied, decided;       // tied: to joints or to a kinematic body in motion, which take the setting's substeps
+};
+
+// Stretches of the packed bodies and of the active contacts that are solved together.
+struct SolverPart {
+    BodyRange bodies;
+    int first_contact, contact_count;
+};
+
 struct WorldData {
     // `number`: of the world among all built, 1 to 255, which its handles carry.
     WorldData(const WorldConfig& settings, uint32_t number);
@@ -48,17 +70,20 @@ struct WorldData {
     Array<ContactRecord> records, old_records;
     Array<OldPlace> old_places;
     Array<uint32_t> touching;  // records with points, in order
-    Array<uint32_t> active;    // those of them that are solved: at least one body awake
+    Array<uint32_t> active;    // those of them that are solved, by class of substeps: at least one body awake
+    Array<uint32_t> unsorted;
     Array<Overlap> overlaps;
     Array<uint8_t> trigger_hits;    // by pair
     Array<uint32_t> active_joints;  // slots of the joints that are solved, in creation order
     Array<JointRecord> joint_records;
 
     // This step's awake bodies, packed for the solver.
-    Array<uint32_t> awake;  // slots, in order of slots
+    Array<uint32_t> awake;  // slots, by class of substeps and then in order of slots
     SolverBodies solver_bodies;
-    Solver solver;
-    Array<uint32_t> island_parent;  // union-find over body slots
+    Array<IslandLoad> island_loads;  // by body slot
+    SolverPart parts[substep_classes];
+    Solver solvers[substep_classes];  // joints are solved by the first
+    Array<uint32_t> island_parent;    // union-find over body slots
     Array<float> island_still;
 
     float last_h = 0.0f;  // substep that the stored impulses belong to
@@ -76,12 +101,17 @@ void find_box_pairs(WorldData& world);
 void match_pairs(WorldData& world);
 void find_contacts(WorldData& world, float dt);
 void update_islands(WorldData& world, float dt);
-void pack_bodies(WorldData& world, float h);
+void choose_substeps(WorldData& world, float dt);
+void pack_bodies(WorldData& world, float dt);
 void pack_contacts(WorldData& world);
 void pack_joints(WorldData& world, float h);
+void unpack_contacts(WorldData& world);
 void unpack_joints(WorldData& world, float h);
 void unpack_bodies(WorldData& world, float dt, bool forces_end);
 void finish_step(WorldData& world, float dt);
+
+// 0 .. substep_classes - 1, for a body that is about to be packed; after choose_substeps().
+int substep_class(WorldData& world, uint32_t slot);
 
 // Removes the joints of a body that is about to be removed.
 void remove_joints_of(WorldData& world, uint32_t body);

@@ -40,9 +40,35 @@ LENDULET_FORCE_INLINE Float16 pairs_low(Float16 a, Float16 b) {
 LENDULET_FORCE_INLINE Float16 pairs_high(Float16 a, Float16 b) {
     return __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
 }
-LENDULET_FORCE_INLINE Float8 join(Float4 a, Float4 b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
+// Two halves to one register. By intrinsics where there are any: GCC makes a load, a copy and a two-operand shuffle of
+// the general form, where one insertion from memory does.
+LENDULET_FORCE_INLINE Float8 join(Float4 a, Float4 b) {
+#if defined(__AVX__)
+    return (Float8)_mm256_insertf128_ps(_mm256_castps128_ps256((__m128)a), (__m128)b, 1);
+#else
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
+}
 LENDULET_FORCE_INLINE Float16 join(Float8 a, Float8 b) {
+#if defined(__AVX512DQ__)
+    return (Float16)_mm512_insertf32x8(_mm512_castps256_ps512((__m256)a), (__m256)b, 1);
+#else
     return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#endif
+}
+// Even or odd quads of both.
+LENDULET_FORCE_INLINE Float16 even_quads(Float16 a, Float16 b) {
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27);
+}
+LENDULET_FORCE_INLINE Float16 odd_quads(Float16 a, Float16 b) {
+    return __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31);
+}
+// The quads of a pair in turns: a0 b0 a1 b1 and a2 b2 a3 b3.
+LENDULET_FORCE_INLINE Float16 quads_low(Float16 a, Float16 b) {
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23);
+}
+LENDULET_FORCE_INLINE Float16 quads_high(Float16 a, Float16 b) {
+    return __builtin_shufflevector(a, b, 8, 9, 10, 11, 24, 25, 26, 27, 12, 13, 14, 15, 28, 29, 30, 31);
 }
 
 // Transposes every 4 x 4 block of 128-bit lanes.
@@ -138,6 +164,59 @@ LENDULET_FORCE_INLINE void scatter4(float* base, const int32_t* index, int strid
                 }
             }
         }
+    }
+}
+
+// As gather4, of eight floats: wide registers take half as many loads and four fifths of the shuffles.
+template <int W>
+LENDULET_FORCE_INLINE void gather8(const float* base, const int32_t* index, int stride, int offset,
+                                   Wide<float, W> out[8]) {
+    using namespace detail;
+    if constexpr (W == 16 && W <= native_lanes) {
+        auto half = [&](int i) {
+            return load_wide<Float8>(base + static_cast<ptrdiff_t>(index[i]) * stride + offset);
+        };
+        Float16 low[4], high[4];
+        for (int k = 0; k < 4; ++k) {
+            low[k] = join(half(k), half(k + 4));
+            high[k] = join(half(k + 8), half(k + 12));
+        }
+        transpose4(low[0], low[1], low[2], low[3]);
+        transpose4(high[0], high[1], high[2], high[3]);
+        for (int k = 0; k < 4; ++k) {
+            out[k] = even_quads(low[k], high[k]);
+            out[k + 4] = odd_quads(low[k], high[k]);
+        }
+    } else {
+        gather4<W>(base, index, stride, offset, out);
+        gather4<W>(base, index, stride, offset + 4, out + 4);
+    }
+}
+
+// The inverse of gather8, see scatter4.
+template <int W>
+LENDULET_FORCE_INLINE void scatter8(float* base, const int32_t* index, int stride, int offset,
+                                    const Wide<float, W> in[8]) {
+    using namespace detail;
+    if constexpr (W == 16 && W <= native_lanes) {
+        Float16 low[4], high[4];
+        for (int k = 0; k < 4; ++k) {
+            low[k] = quads_low(in[k], in[k + 4]);
+            high[k] = quads_high(in[k], in[k + 4]);
+        }
+        transpose4(low[0], low[1], low[2], low[3]);
+        transpose4(high[0], high[1], high[2], high[3]);
+        asm volatile("" : "+r"(index));  // fresh loads of the indices: kept ones would be spilled
+        auto put = [&](int i, Float8 v) { store_wide(base + static_cast<ptrdiff_t>(index[i]) * stride + offset, v); };
+        for (int k = 0; k < 4; ++k) {
+            put(k, __builtin_shufflevector(low[k], low[k], 0, 1, 2, 3, 4, 5, 6, 7));
+            put(k + 4, __builtin_shufflevector(low[k], low[k], 8, 9, 10, 11, 12, 13, 14, 15));
+            put(k + 8, __builtin_shufflevector(high[k], high[k], 0, 1, 2, 3, 4, 5, 6, 7));
+            put(k + 12, __builtin_shufflevector(high[k], high[k], 8, 9, 10, 11, 12, 13, 14, 15));
+        }
+    } else {
+        scatter4<W>(base, index, stride, offset, in);
+        scatter4<W>(base, index, stride, offset + 4, in + 4);
     }
 }
 

@@ -1,0 +1,159 @@
+// Which islands take more substeps than the world's setting. A contact that carries R times the weight of its lighter
+// body sinks by 2 (leak / bias) R g h^2, and a column of size w and height H under it buckles for R (H / w)^2 g h^2 of
+// about w (docs/solver.md); both shrink with the square of the substep. Small islands that need it therefore take 2, 4
+// or 8 times as many substeps; large ones, where that would cost, and those with joints or on bodies that are moved by
+// hand keep to the setting.
+//
+// Reads this step's contacts with their warm-start impulses, which are in units of the world's substep. Leaves the
+// bodies' slots in the records, and each body's class in `island_loads`.
+#include <utility>
+
+#include "world/world_data.h"
+
+namespace lendulet {
+namespace {
+
+constexpr int most_contacts = 1024;       // of an island, times its multiple of substeps
+constexpr float allowed_sinking = 1e-3f;  // of the size of the bodies
+constexpr float buckling_reserve = 1.7f;  // above the load at which a column of boxes was seen to buckle
+constexpr float resting_speed = 0.5f;     // m/s; what moves faster is no load but an impact
+constexpr float kept_reserve = 1.6f;  // a class is left only when fewer substeps would carry this many times the load
+constexpr int patience = 60;          // ... for so many steps: a column that has just stiffened springs up a little
+
+uint32_t root(Array<IslandLoad>& loads, uint32_t i) {
+    while (loads[i].parent != i) {
+        loads[i].parent = loads[loads[i].parent].parent;
+        i = loads[i].parent;
+    }
+    return i;
+}
+
+// Begins the entry of a dynamic body, anew in every step.
+void entry(WorldData& world, uint32_t slot) {
+    IslandLoad& l = world.island_loads[slot];
+    if (l.step == world.steps + 1) return;
+    float height = dot(from_origin(world.bodies.pose[slot].position), world.config.gravity);
+    bool known = l.step == world.steps;
+    l = {world.steps + 1,
+         slot,
+         0,
+         0.0f,
+         0.0f,
+         height,
+         height,
+         known ? l.substeps : uint8_t{0},
+         known ? l.waited : uint8_t{0},
+         0,
+         false,
+         false};
+}
+
+void join(Array<IslandLoad>& loads, uint32_t a, uint32_t b) {
+    a = root(loads, a);
+    b = root(loads, b);
+    if (a == b) return;
+    if (b < a) std::swap(a, b);
+    IslandLoad &x = loads[a], &y = loads[b];
+    y.parent = a;
+    x.contacts += y.contacts;
+    x.sinking = maximum(x.sinking, y.sinking);
+    x.buckling = maximum(x.buckling, y.buckling);
+    x.lowest = minimum(x.lowest, y.lowest);
+    x.highest = maximum(x.highest, y.highest);
+    x.before = x.before > y.before ? x.before : y.before;
+    x.waited = x.waited < y.waited ? x.waited : y.waited;
+    x.tied |= y.tied;
+}
+
+bool moves(const WorldData& world, uint32_t slot) {
+    const BodyMomenta& m = world.bodies.momenta[slot];
+    return length_squared(m.p) + length_squared(m.L) > 0.0f;
+}
+
+// The least class whose substeps carry `load` times the island's loads.
+int class_for(const IslandLoad& l, float gravity, float dt, int substeps, float load) {
+    float height = (l.highest - l.lowest) / gravity;
+    float drop = load * gravity * dt * dt * (contact_leak / contact_bias);
+    float needed = drop * maximum((2.0f / allowed_sinking) * l.sinking,
+                                  buckling_reserve * l.buckling * height * height);  // square of the substeps
+    int c = 0;
+    for (float n = static_cast<float>(substeps); c + 1 < substep_classes && n * n < needed; n *= 2.0f) ++c;
+    return c;
+}
+
+// Sets the class of a root: up at once, down one at a time and with patience.
+void decide(IslandLoad& l, float gravity, float dt, int substeps) {
+    l.decided = true;
+    if (l.tied || !(gravity > 0.0f)) return;
+    int c = class_for(l, gravity, dt, substeps, 1.0f), kept = l.before;
+    bool bearable = kept > 0 && class_for(l, gravity, dt, substeps, kept_reserve) < kept;
+    l.waited = bearable ? static_cast<uint8_t>(l.waited + 1) : uint8_t{0};
+    if (l.waited >= patience) --kept, l.waited = 0;
+    if (c < kept) c = kept;
+    while (c > 0 && (l.contacts << c) > most_contacts) --c;
+    l.substeps = static_cast<uint8_t>(c);
+}
+
+}  // namespace
+
+void choose_substeps(WorldData& world, float dt) {
+    BodyStore& bodies = world.bodies;
+    Array<IslandLoad>& loads = world.island_loads;
+    loads.resize(bodies.slots.capacity());
+    const float gravity = length(world.config.gravity);
+    const float weight = gravity * dt / static_cast<float>(world.config.solver_steps);
+    auto slow = [&](uint32_t slot) { return length_squared(bodies.velocity(slot)) < resting_speed * resting_speed; };
+    world.active.clear();
+    for (uint32_t i : world.touching) {
+        ContactRecord& r = world.records[i];
+        const ColliderPair& p = world.pairs.now[r.pair];
+        bool flipped = (r.flags & contact_flipped) != 0;
+        uint32_t a = world.colliders.info[flipped ? p.b : p.a].body, b = world.colliders.info[flipped ? p.a : p.b].body;
+        const BodyInfo &info_a = bodies.info[a], &info_b = bodies.info[b];
+        if (info_b.asleep || info_b.type != BodyType::dynamic)
+            continue;  // B moves wherever one of them does, and islands wake as one
+        r.body_a = static_cast<int32_t>(a);
+        r.body_b = static_cast<int32_t>(b);
+        world.active.push_back(i);
+        bool both = info_a.type == BodyType::dynamic;
+        entry(world, b);
+        if (both) {
+            entry(world, a);
+            join(loads, a, b);
+        }
+        IslandLoad& l = loads[root(loads, b)];
+        ++l.contacts;
+        l.tied |= info_a.type == BodyType::kinematic && moves(world, a);
+        float impulse = r.normal_impulse[0] + r.normal_impulse[1] + r.normal_impulse[2] + r.normal_impulse[3];
+        float lightest = bodies.mass[b].inverse_mass, radius = info_b.radius;
+        if (both) {
+            lightest = maximum(lightest, bodies.mass[a].inverse_mass);
+            radius = minimum(radius, info_a.radius);
+        }
+        if (impulse * lightest > weight && slow(b) && (!both || slow(a))) {
+            float ratio = impulse * lightest / weight, size = 1.15f * radius;  // a cube's edge from its diagonal
+            l.sinking = maximum(l.sinking, ratio / size);
+            l.buckling = maximum(l.buckling, ratio / (size * size * size));
+        }
+    }
+    auto mark = [&](uint32_t slot) {
+        if (loads[slot].step == world.steps + 1) loads[root(loads, slot)].tied = true;
+    };
+    world.joints.for_each_link([&](uint32_t a, uint32_t b) { mark(a), mark(b); });
+    for (uint32_t i : world.active) {
+        IslandLoad& l = loads[root(loads, static_cast<uint32_t>(world.records[i].body_b))];
+        if (!l.decided) decide(l, gravity, dt, world.config.solver_steps);
+    }
+}
+
+int substep_class(WorldData& world, uint32_t slot) {
+    if (slot >= world.island_loads.size()) return 0;
+    IslandLoad& l = world.island_loads[slot];
+    if (l.step != world.steps + 1) return 0;
+    const IslandLoad& island = world.island_loads[root(world.island_loads, slot)];
+    l.substeps = island.substeps;
+    l.waited = island.waited;
+    return l.substeps;
+}
+
+}  // namespace lendulet
