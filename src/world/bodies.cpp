@@ -155,6 +155,7 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
         (last == no_slot ? info.first_collider : world.colliders.info[last].next) = slot;
         last = slot;
         ++info.collider_count;
+        world.query_scene.changed(slot);
         info.radius = maximum(info.radius, length(world.colliders.local[slot].translation) + ci.radius);
     }
 }
@@ -265,6 +266,7 @@ Status World::remove_body(BodyId id) {
         world.colliders.shape[c] = Sphere{};  // lets go of shared hulls and meshes
         world.colliders.info[c].body = no_slot;
         world.colliders.info[c].boxed = false;
+        world.query_scene.changed(c);
         world.colliders.slots.remove(c);
         c = next;
     }

@@ -92,6 +92,7 @@ void finish_step(WorldData& world, float dt) {
     world.last_h = dt / static_cast<float>(world.config.solver_steps);
     world.time += dt;
     ++world.steps;
+    world.query_scene.all_moved();
 }
 
 Status World::update(float dt) {

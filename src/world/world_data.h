@@ -17,6 +17,7 @@
 #include "solver/joint.h"
 #include "solver/solver.h"
 #include "world/pairs.h"
+#include "world/queries/scene.h"
 
 namespace lendulet {
 
@@ -43,6 +44,7 @@ struct WorldData {
     bool fixed_changed = true;  // static colliders came, went or moved
     Array<BoxPair> box_pairs;
     PairTable pairs;
+    QueryScene query_scene;  // what queries search, brought up to date by the first of them after a change
 
     // Manifolds of this step and the one before; each pair has its own stretch.
     Array<ContactRecord> records, old_records;
