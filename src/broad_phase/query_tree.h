@@ -118,24 +118,26 @@ void QueryTree::cast(const float origin[3], const float translation[3], const fl
                      Visit&& visit) const {
     // The slab test of Kay and Kajiya 1986 with a reciprocal. Where the box does not move along an axis a huge number
     // stands for it: what is outside is then entered far beyond any limit.
-    Float4 from_low[3], from_high[3], inverse[3];
-    bool forwards[3];
+    Float4 from_near[3], from_far[3], inverse[3];
+    int near[3], far[3];  // places of the sides that are entered and left, in floats from the start of a block
     for (int d = 0; d < 3; ++d) {
+        constexpr int upper = 3 * block_size;
+        bool forwards = translation[d] >= 0.0f;
         float grown = half[d] + margin * (absolute(origin[d]) + half[d]);
-        from_low[d] = splat<Float4>(origin[d] - grown), from_high[d] = splat<Float4>(origin[d] + grown);
-        forwards[d] = translation[d] >= 0.0f;
-        float along = absolute(translation[d]) > 1e-25f ? translation[d] : forwards[d] ? 1e-25f : -1e-25f;
+        from_near[d] = splat<Float4>(forwards ? origin[d] + grown : origin[d] - grown);
+        from_far[d] = splat<Float4>(forwards ? origin[d] - grown : origin[d] + grown);
+        near[d] = d * block_size + (forwards ? 0 : upper), far[d] = d * block_size + (forwards ? upper : 0);
+        float along = absolute(translation[d]) > 1e-25f ? translation[d] : forwards ? 1e-25f : -1e-25f;
         inverse[d] = splat<Float4>(1.0f / along);
     }
     auto keys_of = [&](const BoxBlock& box, float now, float keys[block_size]) {
+        const float* sides = box.lower[0];
         uint32_t hits = 0;
         for (int lanes = 0; lanes < block_size; lanes += 4) {
             Float4 enter = splat<Float4>(0.0f), leave = splat<Float4>(now);
             for (int d = 0; d < 3; ++d) {
-                Float4 low = load_wide<Float4>(box.lower[d] + lanes) - from_high[d];
-                Float4 high = load_wide<Float4>(box.upper[d] + lanes) - from_low[d];
-                enter = maximum((forwards[d] ? low : high) * inverse[d], enter);
-                leave = minimum((forwards[d] ? high : low) * inverse[d], leave);
+                enter = maximum((load_wide<Float4>(sides + near[d] + lanes) - from_near[d]) * inverse[d], enter);
+                leave = minimum((load_wide<Float4>(sides + far[d] + lanes) - from_far[d]) * inverse[d], leave);
             }
             enter = enter * splat<Float4>(1.0f - margin);
             hits |= mask_bits(enter <= leave) << lanes;

@@ -12,7 +12,7 @@ constexpr int rays_per_task = 64, casts_per_task = 8;
 struct RayProbe {
     using Hit = LocalRayHit;
     const WorldData& world;
-    const Ray& ray;
+    const QueryRay ray;
     float origin[3], translation[3], half[3] = {};
 
     RayProbe(const WorldData& w, const Ray& r)
@@ -20,9 +20,9 @@ struct RayProbe {
           ray(r),
           origin{r.origin.x, r.origin.y, r.origin.z},
           translation{r.translation.x, r.translation.y, r.translation.z} {}
-    float limit() const { return ray.max_fraction; }
+    float limit() const { return ray.given.max_fraction; }
     bool test(uint32_t c, const QueryTarget& t, double limit, Hit& hit) const {
-        return cast_at(world.colliders.geometry[c], t.position, t.rotation, ray, limit, hit);
+        return cast_at(world.colliders.geometry[c], t.position, t.rotation, t.radius, ray, limit, hit);
     }
     QueryHit finished(const Hit& hit) const { return make_hit(hit, ray); }
 };

@@ -42,14 +42,29 @@ inline bool is_seen(const QueryTarget& t, uint32_t ignored, const QueryFilter& f
     return (t.category & f.collision.mask) != 0 && (f.collision.category & t.mask) != 0;
 }
 
-// The ray against one target; true with the hit's fraction, normal (world axes) and triangle.
-bool cast_at(const Geometry& g, Vec3 position, Quat rotation, const Ray& ray, double limit, LocalRayHit& hit);
+// A ray, ready for use.
+struct QueryRay {
+    const Ray& given;
+    Vec3d origin, translation;
+    double inverse_square;  // 1 / |translation|^2
+
+    explicit QueryRay(const Ray& r)
+        : given(r),
+          origin{r.origin.x, r.origin.y, r.origin.z},
+          translation(to_double(r.translation)),
+          inverse_square(1.0 / dot(translation, translation)) {}
+};
+
+// The ray, or cast, up to fraction `limit` against one target that lies within `radius` of its position; true with the
+// hit's fraction, normal (world axes) and triangle.
+bool cast_at(const Geometry& g, Vec3 position, Quat rotation, float radius, const QueryRay& ray, double limit,
+             LocalRayHit& hit);
 bool cast_at(const Geometry& g, Vec3 position, Quat rotation, const QueryCast& cast, double limit, CastHit& hit);
 
 inline Vec3d in_double(Position p) { return {p.x, p.y, p.z}; }
 inline Position at(Vec3d p) { return lendulet::at(to_float(p)); }
 
-QueryHit make_hit(const LocalRayHit& hit, const Ray& ray);
+QueryHit make_hit(const LocalRayHit& hit, const QueryRay& ray);
 QueryHit make_hit(const CastHit& hit, Position start);  // the point is relative to `start`
 Proximity make_proximity(const Nearness& n, Position origin);
 

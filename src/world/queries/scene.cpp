@@ -57,6 +57,7 @@ void QueryScene::place(const WorldData& world, uint32_t c) {
     QueryTarget& t = targets_[c];
     t.position = from_origin(pose * local.translation);
     t.rotation = pose.orientation * local.rotation;
+    t.radius = 1.00001f * info.radius;  // not smaller for rounding
     t.body = info.body;
     t.category = info.filter.category, t.mask = info.filter.mask, t.group = info.filter.group;
     t.type = static_cast<uint8_t>(world.bodies.info[info.body].type);

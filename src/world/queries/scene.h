@@ -24,6 +24,7 @@ struct QueryTarget {
     Vec3 position;  // of the shape
     uint32_t body = no_slot;
     Quat rotation;
+    float radius = 0.0f;  // of a sphere about the position that holds the shape
     uint64_t category = 0, mask = 0;
     uint32_t group = 0;
     uint8_t type = 0;  // BodyType

@@ -2,11 +2,20 @@
 #include "world/queries/query.h"
 
 namespace lendulet {
+namespace {
 
-bool cast_at(const Geometry& g, Vec3 position, Quat rotation, const Ray& ray, double limit, LocalRayHit& hit) {
+double clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
+
+}  // namespace
+
+bool cast_at(const Geometry& g, Vec3 position, Quat rotation, float radius, const QueryRay& ray, double limit,
+             LocalRayHit& hit) {
+    Vec3d from = ray.origin - to_double(position);
+    double nearest = clamp(-dot(from, ray.translation) * ray.inverse_square, 0.0, limit);
+    Vec3d closest = from + nearest * ray.translation;
+    if (dot(closest, closest) > static_cast<double>(radius) * radius) return false;
     Mat3d r = exact_rotation(rotation);
-    LocalRay local{transpose_multiply(r, in_double(ray.origin) - to_double(position)),
-                   transpose_multiply(r, to_double(ray.translation)), limit};
+    LocalRay local{transpose_multiply(r, from), transpose_multiply(r, ray.translation), limit};
     if (!cast_ray(g, local, hit)) return false;
     hit.normal = r * hit.normal;
     return true;
@@ -19,12 +28,12 @@ bool cast_at(const Geometry& g, Vec3 position, Quat rotation, const QueryCast& c
     return cast_shapes(g, still, cast.shape.geometry, cast.motion, limit, hit);
 }
 
-QueryHit make_hit(const LocalRayHit& hit, const Ray& ray) {
+QueryHit make_hit(const LocalRayHit& hit, const QueryRay& ray) {
     QueryHit out;
     out.hit = true;
     out.triangle = hit.triangle;
     out.fraction = static_cast<float>(hit.fraction);
-    out.point = at(in_double(ray.origin) + hit.fraction * to_double(ray.translation));
+    out.point = at(ray.origin + hit.fraction * ray.translation);
     out.normal = to_float(hit.normal);
     out.started_inside = hit.inside;
     return out;
@@ -58,10 +67,12 @@ Result<QueryHit> cast_ray(const PosedShape& target, const Ray& ray) {
     if (!shape) return shape.error();
     if (Status s = check_ray(ray, call); !s) return s.error();
     const QueryShape& t = shape.value();
+    const QueryRay ready(ray);
+    float radius = 1.00001f * bounding_radius(t.geometry);
     LocalRayHit hit;
-    if (!cast_at(t.geometry, from_origin(t.pose.position), t.pose.orientation, ray, ray.max_fraction, hit))
+    if (!cast_at(t.geometry, from_origin(t.pose.position), t.pose.orientation, radius, ready, ray.max_fraction, hit))
         return QueryHit{};
-    return make_hit(hit, ray);
+    return make_hit(hit, ready);
 }
 
 Result<QueryHit> cast_shape(const PosedShape& target, const ShapeCast& cast) {
