@@ -73,7 +73,7 @@ struct Proximity {
     // Between the surfaces, m; negative where they overlap: the length of the shortest way out. Moving A by
     // distance * normal makes them touch. Of overlapping triangles of a mesh the one that takes the longest way counts.
     float distance = 0.0f;
-    Vec3 normal{};                // unit, from A to B
+    Vec3 normal{};                  // unit, from A to B
     Position point_a{}, point_b{};  // on the surfaces
     uint64_t user_data = 0, body_user_data = 0;
     explicit operator bool() const { return found; }

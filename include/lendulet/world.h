@@ -52,6 +52,7 @@ struct WorldConfig {
     int workers = 1;  // threads including the caller's, 1 .. 64
     int width = 0;    // SIMD lanes 1, 4, 8 or 16; 0: the widest this machine has
     bool allow_sleep = true;
+    bool continuous = true;  // fast bodies are stopped where they would pass through static and kinematic ones
     AllocatorHook allocator{};
     TaskHook tasks{};
 };
@@ -105,6 +106,7 @@ struct StepStatistics {
     float max_penetration;  // deepest overlap after the step, m
     int capped_bodies;      // bodies whose speed was cut to the limit
     int contained_bodies;   // bodies whose state went non-finite, was put back and stopped
+    int stopped_bodies;     // fast bodies that were put where they met what they would have passed through
     size_t bytes_per_body, bytes_per_manifold;
 };
 
@@ -180,8 +182,8 @@ public:
     BodyId body_of(ColliderId id) const;
 
     // --- queries (see query.h): exact, of the present. Errors: bad_query, see there.
-    // The first collider that the ray or the cast shape meets; of several at the same fraction the one with the smallest
-    // id. A hit with `hit` false where there is none.
+    // The first collider that the ray or the cast shape meets; of several at the same fraction the one with the
+    // smallest id. A hit with `hit` false where there is none.
     Result<QueryHit> cast_ray(const Ray& ray, const QueryFilter& filter = {}) const;
     Result<QueryHit> cast_shape(const ShapeCast& cast, const QueryFilter& filter = {}) const;
     // Whether there is any; as soon as one is found.
@@ -247,6 +249,7 @@ public:
     WorldBuilder& workers(int n) { return config_.workers = n, *this; }
     WorldBuilder& width(int lanes) { return config_.width = lanes, *this; }
     WorldBuilder& sleep(bool allow) { return config_.allow_sleep = allow, *this; }
+    WorldBuilder& continuous(bool on) { return config_.continuous = on, *this; }
     WorldBuilder& allocator(AllocatorHook hook) { return config_.allocator = hook, *this; }
     WorldBuilder& tasks(TaskHook hook) { return config_.tasks = hook, *this; }
     const WorldConfig& config() const { return config_; }

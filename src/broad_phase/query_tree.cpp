@@ -163,8 +163,10 @@ void QueryTree::build(const BroadBox* boxes, int count) {
             unbounded_.push_back(b.index);
             continue;
         }
-        items_.push_back({{b.lower[0], b.lower[1], b.lower[2]}, {b.upper[0], b.upper[1], b.upper[2]},
-                          static_cast<uint32_t>(i), b.index});
+        items_.push_back({{b.lower[0], b.lower[1], b.lower[2]},
+                          {b.upper[0], b.upper[1], b.upper[2]},
+                          static_cast<uint32_t>(i),
+                          b.index});
     }
     if (items_.empty()) return;
     Part all{0, items_.count(), {}, {}};
@@ -219,8 +221,6 @@ bool QueryTree::refit(const BroadBox* boxes) {
     return !(total_size() > most_growth * built_size_);
 }
 
-size_t QueryTree::bytes() const {
-    return nodes_.bytes() + slots_.bytes() + unbounded_.bytes() + items_.bytes();
-}
+size_t QueryTree::bytes() const { return nodes_.bytes() + slots_.bytes() + unbounded_.bytes() + items_.bytes(); }
 
 }  // namespace lendulet

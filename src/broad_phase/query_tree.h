@@ -17,8 +17,8 @@ public:
 
     // Builds the tree of boxes[0, count), whose indices are distinct. O(n log n).
     void build(const BroadBox* boxes, int count);
-    // Takes over new bounds of the same boxes in the same order. False where a box has become infinite or finite, or the
-    // tree has become so much larger that it should be built anew; then it must be.
+    // Takes over new bounds of the same boxes in the same order. False where a box has become infinite or finite, or
+    // the tree has become so much larger that it should be built anew; then it must be.
     bool refit(const BroadBox* boxes);
     int count() const { return count_; }
 
@@ -83,10 +83,10 @@ private:
 
     int count_ = 0;
     float built_size_ = 0.0f;
-    Array<Node> nodes_;         // parents before children
-    Array<uint32_t> slots_;     // of every lane that holds a box, its place in the caller's array
-    Array<uint32_t> unbounded_; // indices of infinite boxes
-    Array<Item> items_;         // while building
+    Array<Node> nodes_;          // parents before children
+    Array<uint32_t> slots_;      // of every lane that holds a box, its place in the caller's array
+    Array<uint32_t> unbounded_;  // indices of infinite boxes
+    Array<Item> items_;          // while building
 };
 
 template <class Keys, class Visit>

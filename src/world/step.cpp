@@ -63,7 +63,9 @@ void step(WorldData& world, float dt, bool last) {
     world.solver.store(world.tasks, world.records.data());
     world.solver.store_joints(world.tasks);
     unpack_joints(world, h);
+    remember_poses(world);
     unpack_bodies(world, dt, last);
+    stop_at_impacts(world, dt);
     finish_step(world, dt);
     clock.lap(Stage::finish);
 }

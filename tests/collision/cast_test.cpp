@@ -1,6 +1,6 @@
-// Shape casts, by their certificate: at the reported fraction the shapes are within a small part of their size, at every
-// fraction before they are apart. Distances along the way come from the distance query, which is tested on its own, and
-// for polytopes from the oracle.
+// Shape casts, by their certificate: at the reported fraction the shapes are within a small part of their size, at
+// every fraction before they are apart. Distances along the way come from the distance query, which is tested on its
+// own, and for polytopes from the oracle.
 #include "collision/query/cast.h"
 
 #include <algorithm>

@@ -165,7 +165,7 @@ TEST(Rays, ExactFigures) {
     EXPECT_NEAR(hit.fraction, 0.5, 1e-12);
     EXPECT_NEAR(hit.normal.y, 1.0, 1e-12);
     EXPECT_FALSE(cast_ray(cone.geometry, {{0.2, 3.0, 0.0}, {0.0, -2.3, 0.0}, 1.0}, hit));  // above the side: y = 0.6
-    Solid plane(Plane{{0.0f, 2.0f, 0.0f}, 1.0f});  // y <= 0.5
+    Solid plane(Plane{{0.0f, 2.0f, 0.0f}, 1.0f});                                          // y <= 0.5
     ASSERT_TRUE(cast_ray(plane.geometry, {{1.0, 2.0, 0.0}, {1.0, -3.0, 0.0}, 1.0}, hit));
     EXPECT_NEAR(hit.fraction, 0.5, 1e-7);
     EXPECT_FALSE(cast_ray(plane.geometry, {{1.0, 2.0, 0.0}, {1.0, 3.0, 0.0}, 1.0}, hit));
@@ -185,9 +185,8 @@ TEST(Rays, FromFarAway) {
 }
 
 TEST(Rays, MeetTheFirstOfAMeshsTriangles) {
-    TriangleMesh mesh = grid(24, 0.25f, [](float x, float z) {
-        return 0.3f * sin_cos(2.0f * x).sin * sin_cos(1.7f * z).cos;
-    });
+    TriangleMesh mesh =
+        grid(24, 0.25f, [](float x, float z) { return 0.3f * sin_cos(2.0f * x).sin * sin_cos(1.7f * z).cos; });
     Solid solid(mesh);
     const MeshData& data = mesh.data();
     Random random(7);
@@ -205,8 +204,7 @@ TEST(Rays, MeetTheFirstOfAMeshsTriangles) {
             Real f = oracle::dot(n, p[0] - o) / along;
             Vec at = o + f * d;
             bool in = f >= 0 && f <= 1;
-            for (int k = 0; k < 3; ++k)
-                in = in && oracle::dot(n, oracle::cross(p[(k + 1) % 3] - p[k], at - p[k])) >= 0;
+            for (int k = 0; k < 3; ++k) in = in && oracle::dot(n, oracle::cross(p[(k + 1) % 3] - p[k], at - p[k])) >= 0;
             if (in && f < best) best = f, triangle = static_cast<int32_t>(t.original);
         }
         LocalRayHit hit;

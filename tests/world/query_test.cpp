@@ -37,15 +37,19 @@ World mixed_world(int workers = 1, BroadPhaseType type = BroadPhaseType::rtree_o
     const Shape shapes[] = {Cylinder{0.3f, 0.4f}, TaperedCapsule{0.3f, 0.3f, 0.1f}, Cone{0.4f, 0.3f},
                             Box{{0.3f, 0.2f, 0.3f}, 0.1f}, TaperedCylinder{0.3f, 0.4f, 0.2f, 0.05f}};
     for (int i = 0; i < 25; ++i)
-        world.add_rigid_body({.shape = shapes[i % 5],
-                              .position = at(random.vector(-3.0f, 3.0f) + Vec3{0.0f, 9.0f, 0.0f}),
-                              .orientation = random.rotation(),
-                              .user_data = static_cast<uint64_t>(i)})
+        world
+            .add_rigid_body({.shape = shapes[i % 5],
+                             .position = at(random.vector(-3.0f, 3.0f) + Vec3{0.0f, 9.0f, 0.0f}),
+                             .orientation = random.rotation(),
+                             .user_data = static_cast<uint64_t>(i)})
             .value();
     const ColliderDef bar[] = {{.shape = Capsule{2.0f, 0.1f}, .user_data = 5},
                                {.shape = Sphere{0.3f}, .local = {{0.0f, 2.0f, 0.0f}, {}}, .user_data = 6}};
-    world.add_rigid_body({.position = {4.0f, 2.0f, 0.0f}, .angular_velocity = {0.0f, 0.0f, 1.0f}, .colliders = bar,
-                          .kinematic = true})
+    world
+        .add_rigid_body({.position = {4.0f, 2.0f, 0.0f},
+                         .angular_velocity = {0.0f, 0.0f, 1.0f},
+                         .colliders = bar,
+                         .kinematic = true})
         .value();
     const ColliderDef zone[] = {{.shape = Box{{2.0f, 2.0f, 2.0f}}, .is_trigger = true}};
     world.add_static_body({.position = {0.0f, 2.0f, 0.0f}, .colliders = zone}).value();
@@ -201,9 +205,8 @@ TEST(Queries, PointsAreInWhatContainsThem) {
     for (int i = 0; i < scaled(600, 30); ++i) {
         Position point = at(random.vector(-3.0f, 3.0f) + Vec3{0.0f, 1.5f, 0.0f});
         int count = 0;
-        for_each(world, [&](StaticBodyRef, ColliderId, const PosedShape& shape) {
-            count += contains(shape, point).value();
-        });
+        for_each(world,
+                 [&](StaticBodyRef, ColliderId, const PosedShape& shape) { count += contains(shape, point).value(); });
         std::array<Proximity, 20> all;
         ASSERT_EQ(world.overlap_point(point, all).value(), count);
         inside += count;
@@ -230,8 +233,8 @@ TEST(Queries, BatchesGiveWhatSingleCallsGive) {
                          .rotation = i % 2 ? random.vector(-1.0f, 1.0f) : Vec3{}});
     }
     std::vector<QueryHit> first_rays, first_casts;
-    for (auto [workers, type] : {std::pair{1, BroadPhaseType::rtree_omt}, {2, BroadPhaseType::all_pairs},
-                                 {5, BroadPhaseType::sweep_1}}) {
+    for (auto [workers, type] :
+         {std::pair{1, BroadPhaseType::rtree_omt}, {2, BroadPhaseType::all_pairs}, {5, BroadPhaseType::sweep_1}}) {
         World world = mixed_world(workers, type);
         run(world, 60);
         std::vector<QueryHit> out(rays.size()), cast_out(casts.size());
@@ -286,9 +289,11 @@ TEST(Queries, SeeThePresent) {
         for (BodyId b : balls) world.remove_body(b).value();
         balls.clear();
         for (int i = 0; i < (round == 1 ? 100 : 20); ++i)
-            balls.push_back(world.add_static_body({.shape = Sphere{0.4f},
-                                                   .position = {static_cast<float>(i), 5.0f + static_cast<float>(round), 0.0f}})
-                                .value());
+            balls.push_back(
+                world
+                    .add_static_body({.shape = Sphere{0.4f},
+                                      .position = {static_cast<float>(i), 5.0f + static_cast<float>(round), 0.0f}})
+                    .value());
         for (size_t i = 0; i < balls.size(); ++i) {
             Ray ray{{static_cast<float>(i), 10.0f, 0.0f}, {0.0f, -20.0f, 0.0f}};
             EXPECT_EQ(world.cast_ray(ray).value().body, balls[i]) << round;
@@ -349,8 +354,9 @@ TEST(Queries, FiltersChooseWhatIsSeen) {
     PosedShape big{Sphere{3.0f}, {{0.0f, 4.0f, 0.0f}, {}}};
     EXPECT_EQ(world.overlap_shape(big, near, {.ignore_body = kinematic}).value(), 2);
     EXPECT_EQ(world.closest(Position{0.0f, 0.0f, 0.0f}, 9.0f, {.only_body = kinematic}).value().body, kinematic);
-    EXPECT_EQ(world.cast_shape({.start = {Sphere{0.1f}, {{0.0f, 10.0f, 0.0f}, {}}}, .translation = {0.0f, -9.0f, 0.0f}},
-                               {.ignore_body = dynamic})
+    EXPECT_EQ(world
+                  .cast_shape({.start = {Sphere{0.1f}, {{0.0f, 10.0f, 0.0f}, {}}}, .translation = {0.0f, -9.0f, 0.0f}},
+                              {.ignore_body = dynamic})
                   .value()
                   .body,
               kinematic);

@@ -38,8 +38,8 @@ struct Mover {
     }
     // Largest dot product of `direction` with an arm from the pivot to a point of the core.
     double extent(const Mat3d& rotation, Vec3d direction) const {
-        Vec3d arm = rotation * (support_point(shape, transpose_multiply(rotation, direction)) -
-                                to_double(motion.local_pivot));
+        Vec3d arm =
+            rotation * (support_point(shape, transpose_multiply(rotation, direction)) - to_double(motion.local_pivot));
         return dot(direction, arm);
     }
 };
@@ -138,11 +138,12 @@ public:
 
     Nearest at(double t) {
         now_ = t;
-        rotation_a_ = exact_rotation(rotation_at(a_.motion, t)), rotation_b_ = exact_rotation(rotation_at(b_.motion, t));
+        rotation_a_ = exact_rotation(rotation_at(a_.motion, t)),
+        rotation_b_ = exact_rotation(rotation_at(b_.motion, t));
         normal_ = rotation_a_ * to_double(a_.shape.size);
-        Vec3d lowest = pivot_at(b_.motion, t) +
-                       rotation_b_ * (support_point(b_.shape, transpose_multiply(rotation_b_, -normal_)) -
-                                      to_double(b_.motion.local_pivot));
+        Vec3d lowest =
+            pivot_at(b_.motion, t) + rotation_b_ * (support_point(b_.shape, transpose_multiply(rotation_b_, -normal_)) -
+                                                    to_double(b_.motion.local_pivot));
         double height = dot(normal_, lowest - a_.origin(t, rotation_a_)) - a_.shape.offset;
         double separation = height - b_.shape.rounding;
         foot_ = lowest - height * normal_;
@@ -190,6 +191,25 @@ double safe_step(const Probe& probe, const Mover& a, const Mover& b, const Neare
     return sure;
 }
 
+// How fast the shapes part where they are nearest.
+double parting_speed(const Mover& a, const Mover& b, const Nearest& now, double t) {
+    Vec3d of_a = a.motion.translation + cross(a.spin, now.on_a - pivot_at(a.motion, t));
+    Vec3d of_b = b.motion.translation + cross(b.spin, now.on_a - pivot_at(b.motion, t));
+    return dot(now.normal, of_b - of_a);
+}
+
+// Shapes that touch at fraction 0 and part while one turns: the fraction at which they are clear of each other or
+// approach again, by doubling; beyond the limit where they only part.
+template <class Probe>
+double clear_of_start(Probe& probe, const Mover& a, const Mover& b, double size, double limit) {
+    double t = 1.0 / 1024.0;
+    for (; t <= limit; t *= 2.0) {
+        Nearest now = probe.at(t);
+        if (now.overlapping || now.upper > size || !(parting_speed(a, b, now, t) > 0.0)) break;
+    }
+    return t;
+}
+
 template <class Probe>
 bool advance(Probe& probe, const Mover& a, const Mover& b, double max_fraction, CastHit& hit) {
     bool turning = a.turns() || b.turns();
@@ -205,6 +225,12 @@ bool advance(Probe& probe, const Mover& a, const Mover& b, double max_fraction, 
             hit.overlapping = depth > size;
             if (hit.overlapping) return true;
             now = {false, 0.0, 0.0, hit.normal, hit.point};  // they touch: what counts is where they go
+        }
+        if (turning && hit.rounds == 0 && now.upper <= size && parting_speed(a, b, now, t) > 0.0) {
+            t = clear_of_start(probe, a, b, size, max_fraction);
+            if (t > max_fraction) return false;
+            before = now;
+            continue;
         }
         if (now.overlapping) now = before, now.lower = now.upper = 0.0;  // rounding: the last step ended at the surface
         double speed = -dot(now.normal, b.motion.translation - a.motion.translation);
@@ -223,12 +249,13 @@ bool advance(Probe& probe, const Mover& a, const Mover& b, double max_fraction, 
     }
 }
 
-bool cast_mesh(const Geometry& mesh, const Motion& motion_a, const Geometry& b, const Motion& motion_b, double max_fraction,
-               CastHit& hit) {
+bool cast_mesh(const Geometry& mesh, const Motion& motion_a, const Geometry& b, const Motion& motion_b,
+               double max_fraction, CastHit& hit, bool fresh_only) {
     // B's path seen from the mesh: a box about B's pivot that holds B however it turns, and moves as B does.
     Mat3d r = exact_rotation(motion_a.rotation);
     Mover mover(b, motion_b);
-    Vec3d local_a = to_double(motion_a.local_pivot), from = transpose_multiply(r, motion_b.pivot - motion_a.pivot) + local_a;
+    Vec3d local_a = to_double(motion_a.local_pivot),
+          from = transpose_multiply(r, motion_b.pivot - motion_a.pivot) + local_a;
     Vec3d along = transpose_multiply(r, motion_b.translation - motion_a.translation);
     Quat turn = conjugate(motion_a.rotation) * motion_b.rotation;
     double reach = mover.reach + b.rounding;
@@ -255,8 +282,10 @@ bool cast_mesh(const Geometry& mesh, const Motion& motion_a, const Geometry& b, 
         core.triangle = corners;
         CastHit found;
         if (!cast_convex(core, motion_a, b, motion_b, limit, found)) return limit;
+        if (fresh_only && found.overlapping) return limit;
         auto original = static_cast<int32_t>(t.original);
-        bool first = !any || found.fraction < hit.fraction || (found.fraction == hit.fraction && original < hit.triangle);
+        bool first =
+            !any || found.fraction < hit.fraction || (found.fraction == hit.fraction && original < hit.triangle);
         if (!first) return limit;
         any = true;
         hit = found;
@@ -273,20 +302,25 @@ Quat rotation_at(const Motion& motion, double fraction) {
     return rotation_about(motion.axis, static_cast<float>(fraction * motion.angle)) * motion.rotation;
 }
 
-bool cast_convex(const Geometry& a, const Motion& motion_a, const Geometry& b, const Motion& motion_b, double max_fraction,
-                 CastHit& hit) {
+bool cast_convex(const Geometry& a, const Motion& motion_a, const Geometry& b, const Motion& motion_b,
+                 double max_fraction, CastHit& hit) {
     Mover mover_a(a, motion_a), mover_b(b, motion_b);
     ConvexProbe probe(mover_a, mover_b);
     return advance(probe, mover_a, mover_b, max_fraction, hit);
 }
 
-bool cast_shapes(const Geometry& a, const Motion& motion_a, const Geometry& b, const Motion& motion_b, double max_fraction,
-                 CastHit& hit) {
-    if (a.kind == GeometryKind::mesh) return cast_mesh(a, motion_a, b, motion_b, max_fraction, hit);
-    if (a.kind != GeometryKind::plane) return cast_convex(a, motion_a, b, motion_b, max_fraction, hit);
-    Mover mover_a(a, motion_a), mover_b(b, motion_b);
-    PlaneProbe probe(mover_a, mover_b);
-    return advance(probe, mover_a, mover_b, max_fraction, hit);
+bool cast_shapes(const Geometry& a, const Motion& motion_a, const Geometry& b, const Motion& motion_b,
+                 double max_fraction, CastHit& hit, bool fresh_only) {
+    if (a.kind == GeometryKind::mesh) return cast_mesh(a, motion_a, b, motion_b, max_fraction, hit, fresh_only);
+    bool met;
+    if (a.kind == GeometryKind::plane) {
+        Mover mover_a(a, motion_a), mover_b(b, motion_b);
+        PlaneProbe probe(mover_a, mover_b);
+        met = advance(probe, mover_a, mover_b, max_fraction, hit);
+    } else {
+        met = cast_convex(a, motion_a, b, motion_b, max_fraction, hit);
+    }
+    return met && !(fresh_only && hit.overlapping);
 }
 
 }  // namespace lendulet

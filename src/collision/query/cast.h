@@ -1,9 +1,9 @@
 // When two moving shapes first touch: linear casts and casts with rotation, for queries and for continuous collision.
 //
 // Both motions run from fraction 0 to 1 in a common frame. The answer is reached by conservative advancement (Mirtich,
-// "Impulse-based Dynamic Simulation of Rigid Body Systems", 1996): from a plane that separates the shapes and a bound of
-// how fast they can approach along its normal follows a time until which they cannot touch. All steps taken are proven
-// in this way; the shapes are apart at every fraction before the one reported.
+// "Impulse-based Dynamic Simulation of Rigid Body Systems", 1996): from a plane that separates the shapes and a bound
+// of how fast they can approach along its normal follows a time until which they cannot touch. All steps taken are
+// proven in this way; the shapes are apart at every fraction before the one reported.
 #pragma once
 
 #include <cstdint>
@@ -35,11 +35,12 @@ struct CastHit {
 // First fraction up to `max_fraction` at which the shapes touch; false where they do not. Both convex.
 // At the reported fraction they are within 4e-6 of the smaller shape's size (5e-5 where one turns) plus 1e-6 of the
 // larger one's.
-bool cast_convex(const Geometry& a, const Motion& motion_a, const Geometry& b, const Motion& motion_b, double max_fraction,
-                 CastHit& hit);
+bool cast_convex(const Geometry& a, const Motion& motion_a, const Geometry& b, const Motion& motion_b,
+                 double max_fraction, CastHit& hit);
 // The same for A of any kind: a plane, a mesh (the first of its triangles, with its index), or convex. B is convex.
-bool cast_shapes(const Geometry& a, const Motion& motion_a, const Geometry& b, const Motion& motion_b, double max_fraction,
-                 CastHit& hit);
+// `fresh_only`: what overlaps at fraction 0 is left out, triangle by triangle.
+bool cast_shapes(const Geometry& a, const Motion& motion_a, const Geometry& b, const Motion& motion_b,
+                 double max_fraction, CastHit& hit, bool fresh_only = false);
 
 // From the shape's frame, `fraction` of the way.
 Quat rotation_at(const Motion& motion, double fraction);

@@ -100,15 +100,15 @@ void walk(const MeshData& mesh, double limit, Key&& key_of, Visit&& visit) {
 template <class Visit>
 void walk_along(const MeshData& mesh, const SweptBox& box, double limit, Visit&& visit) {
     mesh_walk::walk(
-        mesh, limit,
-        [&](const MeshNode& node, int k, double now) { return mesh_walk::entry_of(box, node, k, now); }, visit);
+        mesh, limit, [&](const MeshNode& node, int k, double now) { return mesh_walk::entry_of(box, node, k, now); },
+        visit);
 }
 
 template <class Visit>
 void walk_outwards(const MeshData& mesh, Vec3d lower, Vec3d upper, double limit, Visit&& visit) {
     mesh_walk::walk(
-        mesh, limit,
-        [&](const MeshNode& node, int k, double) { return mesh_walk::distance_to(node, k, lower, upper); }, visit);
+        mesh, limit, [&](const MeshNode& node, int k, double) { return mesh_walk::distance_to(node, k, lower, upper); },
+        visit);
 }
 
 }  // namespace lendulet

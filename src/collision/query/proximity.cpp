@@ -12,8 +12,8 @@ bool nearness_convex(const PlacedPair& p, double limit, Nearness& out) {
     double radii = static_cast<double>(p.a->rounding) + p.b->rounding;
     GjkCache cold;
     auto far = static_cast<float>(minimum(limit + radii, 3e37) * 1.000001);  // rounded up
-    ConvexDistance d = distance({p.a, p.b, {between, conjugate(p.rotation_a) * p.rotation_b}}, cold,
-                                SimplexSolver::half_space, far);
+    ConvexDistance d =
+        distance({p.a, p.b, {between, conjugate(p.rotation_a) * p.rotation_b}}, cold, SimplexSolver::half_space, far);
     out.distance = d.distance - radii;
     if (out.distance > limit) return false;
     Mat3d r = exact_rotation(p.rotation_a);

@@ -8,9 +8,7 @@ namespace {
 
 constexpr float longest_turn = 100.0f;  // rad
 
-Error bad(const char* call, const std::string& what) {
-    return {ErrorCode::bad_query, std::string(call) + ": " + what};
-}
+Error bad(const char* call, const std::string& what) { return {ErrorCode::bad_query, std::string(call) + ": " + what}; }
 
 Status check_fraction(float fraction, const char* call) {
     if (is_finite(fraction) && fraction >= 0.0f) return {};

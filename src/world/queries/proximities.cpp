@@ -80,15 +80,16 @@ int all_overlaps(const ShapeSearch& s, std::span<Proximity> out, bool solids_onl
         if (solids_only && s.world.colliders.geometry[c].kind == GeometryKind::mesh) return;
         if (s.near(c, 0.0, n)) met.push_back({c, n});
     });
-    std::sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.collider < b.collider; });  // order: total
+    std::sort(met.begin(), met.end(),
+              [](const Met& a, const Met& b) { return a.collider < b.collider; });  // order: total
     for (size_t i = 0; i < met.size() && i < out.size(); ++i) out[i] = s.finished(met[i].collider, met[i].nearness);
     return met.count();
 }
 
 Status check_distance(float distance, const char* call) {
     if (is_finite(distance) && distance >= 0.0f) return {};
-    return Error{ErrorCode::bad_query, std::string(call) + ": max_distance is " + text(distance) +
-                                           ", must be finite and not negative"};
+    return Error{ErrorCode::bad_query,
+                 std::string(call) + ": max_distance is " + text(distance) + ", must be finite and not negative"};
 }
 
 QueryShape dot_at(Position point) { return {Geometry{}, {point, {}}}; }

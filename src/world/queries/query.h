@@ -27,7 +27,7 @@ Result<QueryShape> check_convex(const PosedShape& placed, const char* call);
 // A cast, ready for use.
 struct QueryCast {
     QueryShape shape;
-    Motion motion;        // about the shape's origin, which is at the common frame's origin when it starts
+    Motion motion;      // about the shape's origin, which is at the common frame's origin when it starts
     Vec3 lower, upper;  // bounds of the shape about its origin through all its turning, world axes
     float max_fraction;
 };

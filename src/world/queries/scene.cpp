@@ -24,8 +24,7 @@ void QueryScene::changed(uint32_t collider) {
 
 void QueryScene::refresh(const WorldData& world) {
     if (ready_.load(std::memory_order_acquire)) return;
-    while (busy_.exchange(true, std::memory_order_acquire)) {
-    }
+    while (busy_.exchange(true, std::memory_order_acquire)) {}
     if (!ready_.load(std::memory_order_relaxed)) {
         update(world);
         ready_.store(true, std::memory_order_release);

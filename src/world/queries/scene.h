@@ -53,7 +53,8 @@ public:
 
     // As the walks of QueryTree, over all colliders: visit(collider) for what may be met. Each once.
     template <class Visit>
-    void cast(const float origin[3], const float translation[3], const float half[3], float limit, Visit&& visit) const {
+    void cast(const float origin[3], const float translation[3], const float half[3], float limit,
+              Visit&& visit) const {
         auto from_tree = [&](uint32_t c) { return limit = targets_[c].loose ? limit : visit(c); };
         for (uint32_t c : loose_) limit = visit(c);
         moving_tree_.cast(origin, translation, half, limit, from_tree);
