@@ -80,8 +80,8 @@ int all_overlaps(const ShapeSearch& s, std::span<Proximity> out, bool solids_onl
         if (solids_only && s.world.colliders.geometry[c].kind == GeometryKind::mesh) return;
         if (s.near(c, 0.0, n)) met.push_back({c, n});
     });
-    std::sort(met.begin(), met.end(),
-              [](const Met& a, const Met& b) { return a.collider < b.collider; });  // order: total
+    auto by_id = [](const Met& a, const Met& b) { return a.collider < b.collider; };
+    std::sort(met.begin(), met.end(), by_id);  // order: total
     for (size_t i = 0; i < met.size() && i < out.size(); ++i) out[i] = s.finished(met[i].collider, met[i].nearness);
     return met.count();
 }
