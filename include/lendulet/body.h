@@ -87,6 +87,9 @@ struct RigidBodyDef {
     float gravity_factor = 1.0f;
     bool allow_sleep = true;
     bool kinematic = false;  // moves with its given velocities, is not pushed by anything
+    // Never passes through other dynamic bodies, however fast; no body passes through static and kinematic ones in any
+    // case (unless WorldBuilder::continuous(false)). For few, small and fast bodies.
+    bool bullet = false;
     uint64_t user_data = 0;
     std::string_view name{};  // copied; at most 255 bytes are kept
 };

@@ -16,6 +16,7 @@
 #include "lendulet/body.h"
 #include "lendulet/joint.h"
 #include "lendulet/options.h"
+#include "lendulet/query.h"
 
 namespace lendulet {
 
@@ -51,6 +52,7 @@ struct WorldConfig {
     int workers = 1;  // threads including the caller's, 1 .. 64
     int width = 0;    // SIMD lanes 1, 4, 8 or 16; 0: the widest this machine has
     bool allow_sleep = true;
+    bool continuous = true;  // fast bodies are stopped where they would pass through static and kinematic ones
     AllocatorHook allocator{};
     TaskHook tasks{};
 };
@@ -86,7 +88,7 @@ struct AabbView {
     bool leaf;
 };
 
-// Hit of a ray on a collider's bounding box (exact shape queries come with their own interface).
+// Hit of a ray on a collider's bounding box (for the shapes themselves see World::cast_ray).
 struct BoxHit {
     BodyId body;
     ColliderId collider;
@@ -104,6 +106,7 @@ struct StepStatistics {
     float max_penetration;  // deepest overlap after the step, m
     int capped_bodies;      // bodies whose speed was cut to the limit
     int contained_bodies;   // bodies whose state went non-finite, was put back and stopped
+    int stopped_bodies;     // fast bodies that were put where they met what they would have passed through
     size_t bytes_per_body, bytes_per_manifold;
 };
 
@@ -170,13 +173,43 @@ public:
             [](void* context, const AabbView& view) { (*static_cast<std::remove_reference_t<Visit>*>(context))(view); },
             const_cast<void*>(static_cast<const void*>(&visit)));
     }
-    // Queries see the boxes of the last step: each holds its collider through that whole step. Colliders added since
+    // These two see the boxes of the last step: each holds its collider through that whole step. Colliders added since
     // are not found yet, removed ones no more. Colliders whose bounding boxes overlap `box`, at most `capacity`, in
     // collider order; returns how many there are.
     int query_boxes(const Aabb& box, ColliderId* out, int capacity) const;
     // Nearest collider box that the segment from `origin` along `translation` meets. Error: bad_query.
     Result<BoxHit> nearest_box(Position origin, Vec3 translation) const;
     BodyId body_of(ColliderId id) const;
+
+    // --- queries (see query.h): exact, of the present. Errors: bad_query, see there.
+    // The first collider that the ray or the cast shape meets; of several at the same fraction the one with the
+    // smallest id. A hit with `hit` false where there is none.
+    Result<QueryHit> cast_ray(const Ray& ray, const QueryFilter& filter = {}) const;
+    Result<QueryHit> cast_shape(const ShapeCast& cast, const QueryFilter& filter = {}) const;
+    // Whether there is any; as soon as one is found.
+    Result<bool> cast_ray_any(const Ray& ray, const QueryFilter& filter = {}) const;
+    Result<bool> cast_shape_any(const ShapeCast& cast, const QueryFilter& filter = {}) const;
+    // Every collider on the way with its first hit, by fraction, then by id. Writes as many as fit, returns how many
+    // there are.
+    Result<int> cast_ray_all(const Ray& ray, std::span<QueryHit> out, const QueryFilter& filter = {}) const;
+    Result<int> cast_shape_all(const ShapeCast& cast, std::span<QueryHit> out, const QueryFilter& filter = {}) const;
+    // out[i] = cast_ray(rays[i]), to the last bit, on the world's workers; likewise for casts. Both spans have the same
+    // length. These count as writing calls. On an error, which names the place in the array, nothing is written.
+    Status cast_rays(std::span<const Ray> rays, std::span<QueryHit> out, const QueryFilter& filter = {});
+    Status cast_shapes(std::span<const ShapeCast> casts, std::span<QueryHit> out, const QueryFilter& filter = {});
+
+    // The collider nearest to a convex shape or a point, no farther than `max_distance` (>= 0); of those that overlap
+    // it, the deepest; of equal ones the smallest id. A is the shape, B the collider.
+    Result<Proximity> closest(const PosedShape& shape, float max_distance, const QueryFilter& filter = {}) const;
+    Result<Proximity> closest(Position point, float max_distance, const QueryFilter& filter = {}) const;
+    // Every collider that a convex shape overlaps or touches, with the depth, by id. Writes as many as fit, returns how
+    // many there are.
+    Result<int> overlap_shape(const PosedShape& shape, std::span<Proximity> out, const QueryFilter& filter = {}) const;
+    Result<bool> overlap_any(const PosedShape& shape, const QueryFilter& filter = {}) const;
+    // The same for a box along the world's axes, which may be flat.
+    Result<int> overlap_box(const Aabb& box, std::span<Proximity> out, const QueryFilter& filter = {}) const;
+    // Every solid that holds the point, by id; meshes hold none.
+    Result<int> overlap_point(Position point, std::span<Proximity> out, const QueryFilter& filter = {}) const;
 
     // --- whole-world figures
     double kinetic_energy() const;    // J
@@ -216,6 +249,7 @@ public:
     WorldBuilder& workers(int n) { return config_.workers = n, *this; }
     WorldBuilder& width(int lanes) { return config_.width = lanes, *this; }
     WorldBuilder& sleep(bool allow) { return config_.allow_sleep = allow, *this; }
+    WorldBuilder& continuous(bool on) { return config_.continuous = on, *this; }
     WorldBuilder& allocator(AllocatorHook hook) { return config_.allocator = hook, *this; }
     WorldBuilder& tasks(TaskHook hook) { return config_.tasks = hook, *this; }
     const WorldConfig& config() const { return config_; }

@@ -34,6 +34,7 @@ struct ColliderInfo {
     bool is_trigger = false;
     bool boxed = false;   // in the broad phase since the last step; a new owner of a slot is not
     float radius = 0.0f;  // of a sphere about the shape's position that holds it
+    float depth = 0.0f;   // of its inner core below its surface, m
     CollisionFilter filter{};
     uint64_t user_data = 0;
 };

@@ -20,7 +20,7 @@ enum class GeometryKind : uint8_t {
     // one of these is 0; a cylinder has equal radii here, a cone top radius 0.
     tapered_capsule,
     tapered_cylinder,
-    hull,
+    hull,      // size.x: by which part its corners are drawn to the centroid, 0 but for inner cores
     triangle,  // flat core of the three points at `triangle`; made for a moment while a mesh is collided
     plane,     // size = unit normal, rounding = 0, offset
     mesh,
@@ -53,6 +53,15 @@ CentredBox bounds(const Geometry& g, Quat rotation);
 
 // Radius of the smallest sphere about the local origin that holds the shape; for speed bounds. Infinite for planes.
 float bounding_radius(const Geometry& g);
+
+// The inner core of a convex shape: a smaller shape inside it, all of whose surface lies `depth` or more below the
+// outer one (about, where the shape is tapered). What moves less than that within a step cannot carry its inner core
+// across a surface that it did not touch before. Planes and meshes have none (depth 0, the geometry itself).
+struct InnerCore {
+    Geometry geometry;
+    float depth;  // m
+};
+InnerCore inner_core(const Geometry& g);
 
 // A face of the core that the direction looks at best: up to `max_face_vertices` points on the core's surface in order
 // around it, counter-clockwise seen from outside, local frame. Curved faces are given by points on them: the cap of a

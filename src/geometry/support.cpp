@@ -47,6 +47,12 @@ Vec3 support_triangle(const Vec3* p, Vec3 d) {
     return b >= c ? p[1] : p[2];
 }
 
+// A corner, drawn towards the centroid where the hull is an inner core.
+Vec3 support_hull(const Geometry& g, Vec3 d) {
+    Vec3 corner = g.hull->vertices[support_vertex(*g.hull, d)];
+    return g.size.x == 0.0f ? corner : corner - g.size.x * (corner - g.hull->centroid);
+}
+
 // |R| half: half extents of a turned box.
 Vec3 turned_half(const Mat3& r, Vec3 half) {
     return half.x * absolute(r.x) + half.y * absolute(r.y) + half.z * absolute(r.z);
@@ -113,7 +119,7 @@ Vec3 support_core(const Geometry& g, Vec3 d) {
         case GeometryKind::tapered_cylinder:
             return support_tapered_cylinder(g.size, d);
         case GeometryKind::hull:
-            return g.hull->vertices[support_vertex(*g.hull, d)];
+            return support_hull(g, d);
         case GeometryKind::triangle:
             return support_triangle(g.triangle, d);
         case GeometryKind::point:

@@ -138,6 +138,7 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
     BodyInfo& info = world.bodies.info[body];
     Transform to_principal = inverse(world.bodies.principal[body]);
     info.radius = 0.0f;
+    info.depth = 3e38f;
     uint32_t last = no_slot;
     for (CheckedCollider& c : list) {
         uint32_t slot = world.colliders.add();
@@ -147,6 +148,8 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
         ci.filter = c.def.filter;
         ci.user_data = c.def.user_data;
         ci.radius = bounding_radius(c.geometry);
+        ci.depth = inner_core(c.geometry).depth;
+        if (!ci.is_trigger) info.depth = minimum(info.depth, ci.depth);
         world.colliders.geometry[slot] = c.geometry;
         world.colliders.surface[slot] = c.surface;
         world.colliders.given[slot] = c.def.local;
@@ -155,6 +158,7 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
         (last == no_slot ? info.first_collider : world.colliders.info[last].next) = slot;
         last = slot;
         ++info.collider_count;
+        world.query_scene.changed(slot);
         info.radius = maximum(info.radius, length(world.colliders.local[slot].translation) + ci.radius);
     }
 }
@@ -220,6 +224,7 @@ Result<BodyId> World::add_rigid_body(const RigidBodyDef& def) {
     BodyInfo& info = world.bodies.info[slot];
     info.type = def.kinematic ? BodyType::kinematic : BodyType::dynamic;
     info.allow_sleep = def.allow_sleep;
+    info.bullet = def.bullet;
     info.gravity_factor = def.gravity_factor;
     info.linear_damping = def.linear_damping;
     info.angular_damping = def.angular_damping;
@@ -265,6 +270,7 @@ Status World::remove_body(BodyId id) {
         world.colliders.shape[c] = Sphere{};  // lets go of shared hulls and meshes
         world.colliders.info[c].body = no_slot;
         world.colliders.info[c].boxed = false;
+        world.query_scene.changed(c);
         world.colliders.slots.remove(c);
         c = next;
     }

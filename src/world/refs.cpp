@@ -97,6 +97,8 @@ Status RigidBodyRef::set_pose(Position position, Quat orientation) {
     world_->bodies.set_user_pose(slot_, {position, q.value()});
     world_->bodies.change[slot_] = {};
     world_->bodies.info[slot_].placed = true;
+    for (uint32_t c = world_->bodies.info[slot_].first_collider; c != no_slot; c = world_->colliders.info[c].next)
+        world_->query_scene.changed(c);
     return {};
 }
 Status RigidBodyRef::set_velocity(Vec3 v) {

@@ -77,7 +77,9 @@ void step(WorldData& world, float dt, bool last) {
     world.solvers[0].store_joints(world.tasks);
     unpack_contacts(world);
     unpack_joints(world, h);
+    remember_poses(world);
     unpack_bodies(world, dt, last);
+    stop_at_impacts(world, dt);
     finish_step(world, dt);
     clock.lap(Stage::finish);
 }
@@ -112,6 +114,7 @@ void finish_step(WorldData& world, float dt) {
     world.last_h = dt / static_cast<float>(world.config.solver_steps);
     world.time += dt;
     ++world.steps;
+    world.query_scene.all_moved();
 }
 
 Status World::update(float dt) {

@@ -65,6 +65,8 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       fixed_boxes(&memory),
       box_pairs(&memory),
       pairs(&memory),
+      continuous(&memory, tasks.workers()),
+      query_scene(&memory),
       records(&memory),
       old_records(&memory),
       old_places(&memory),

@@ -16,7 +16,9 @@
 #include "solver/contact.h"
 #include "solver/joint.h"
 #include "solver/solver.h"
+#include "world/continuous.h"
 #include "world/pairs.h"
+#include "world/queries/scene.h"
 
 namespace lendulet {
 
@@ -65,6 +67,8 @@ struct WorldData {
     bool fixed_changed = true;  // static colliders came, went or moved
     Array<BoxPair> box_pairs;
     PairTable pairs;
+    ContinuousData continuous;
+    QueryScene query_scene;  // what queries search, brought up to date by the first of them after a change
 
     // Manifolds of this step and the one before; each pair has its own stretch.
     Array<ContactRecord> records, old_records;
@@ -108,6 +112,8 @@ void pack_joints(WorldData& world, float h);
 void unpack_contacts(WorldData& world);
 void unpack_joints(WorldData& world, float h);
 void unpack_bodies(WorldData& world, float dt, bool forces_end);
+void remember_poses(WorldData& world);
+void stop_at_impacts(WorldData& world, float dt);
 void finish_step(WorldData& world, float dt);
 
 // 0 .. substep_classes - 1, for a body that is about to be packed; after choose_substeps().

@@ -1,0 +1,190 @@
+// A tree of boxes for queries: rays, swept boxes, overlaps and nearest boxes, with a visitor that may shorten the
+// search. Eight boxes to a node, split by the surface area heuristic, refitted where only bounds have changed.
+//
+// Unlike the broad phase it holds boxes as they are now and not through a whole step, so that an exact test behind it
+// sees the present; and it is built for few long searches instead of many short ones.
+#pragma once
+
+#include "base/memory.h"
+#include "broad_phase/block.h"
+#include "broad_phase/box.h"
+
+namespace lendulet {
+
+class QueryTree {
+public:
+    explicit QueryTree(const Memory* memory) : nodes_(memory), slots_(memory), unbounded_(memory), items_(memory) {}
+
+    // Builds the tree of boxes[0, count), whose indices are distinct. O(n log n).
+    void build(const BroadBox* boxes, int count);
+    // Takes over new bounds of the same boxes in the same order. False where a box has become infinite or finite, or
+    // the tree has become so much larger that it should be built anew; then it must be.
+    bool refit(const BroadBox* boxes);
+    int count() const { return count_; }
+
+    // All walks call visit(index) for every box that may be met, and some just beside: bounds are tested with a margin
+    // for rounding. `visit` of cast and nearest returns how far the search still goes.
+
+    // Boxes that a box of half extents `half` about origin + t * translation meets for t in [0, limit], roughly by t.
+    template <class Visit>
+    void cast(const float origin[3], const float translation[3], const float half[3], float limit, Visit&& visit) const;
+    // Boxes that overlap [lower, upper].
+    template <class Visit>
+    void overlapping(const float lower[3], const float upper[3], Visit&& visit) const;
+    // Boxes no farther than `limit` from [lower, upper], roughly by distance.
+    template <class Visit>
+    void nearest(const float lower[3], const float upper[3], float limit, Visit&& visit) const;
+
+    size_t bytes() const;
+
+private:
+    static constexpr int heuristic_depth = 20;  // below it parts are halved by number
+    static constexpr int max_depth = heuristic_depth + 12;
+    static constexpr float margin = 2e-6f;  // relative; some roundings of a float
+
+    // child >= 0: node; < 0: ~index of a box. Empty lanes have inverted boxes.
+    struct alignas(64) Node {
+        BoxBlock box;
+        int32_t child[block_size];
+    };
+    struct Item {
+        float lower[3], upper[3];
+        uint32_t slot, index;  // place in the array given; the caller's index
+    };
+    struct Part {
+        int first, count;
+        float lower[3], upper[3];
+        float area() const;
+    };
+    struct Entry {
+        int32_t child;
+        float key;
+    };
+    struct Stack {
+        Entry entries[max_depth * block_size];
+        int top = 0;
+        void push(Entry e, int bottom) {  // nearest last, so that it comes off first
+            int at = top++;
+            for (; at > bottom && entries[at - 1].key < e.key; --at) entries[at] = entries[at - 1];
+            entries[at] = e;
+        }
+    };
+
+    void measure(Part& part) const;
+    void fill(int32_t node, const Part& part, int depth);
+    Part split(Part& part, bool by_heuristic);
+    int split_place(const Part& part);
+    static void set(Node& node, int lane, const float lower[3], const float upper[3], int32_t child);
+    float total_size() const;
+
+    // keys_of(block, limit, keys) writes what orders and prunes the lanes.
+    template <class Keys, class Visit>
+    void walk(float limit, Keys&& keys_of, Visit&& visit) const;
+
+    int count_ = 0;
+    float built_size_ = 0.0f;
+    Array<Node> nodes_;          // parents before children
+    Array<uint32_t> slots_;      // of every lane that holds a box, its place in the caller's array
+    Array<uint32_t> unbounded_;  // indices of infinite boxes
+    Array<Item> items_;          // while building
+};
+
+template <class Keys, class Visit>
+void QueryTree::walk(float limit, Keys&& keys_of, Visit&& visit) const {
+    for (uint32_t index : unbounded_) limit = visit(index);
+    if (nodes_.empty()) return;
+    Stack stack;
+    stack.push({0, 0.0f}, 0);
+    while (stack.top > 0) {
+        Entry e = stack.entries[--stack.top];
+        if (e.key > limit) continue;
+        if (e.child < 0) {
+            limit = visit(static_cast<uint32_t>(~e.child));
+            continue;
+        }
+        const Node& node = nodes_[static_cast<size_t>(e.child)];
+        float keys[block_size];
+        uint32_t hits = keys_of(node.box, limit, keys);
+        int bottom = stack.top;
+        while (hits) {
+            int k = take_bit(hits);
+            stack.push({node.child[k], keys[k]}, bottom);
+        }
+    }
+}
+
+template <class Visit>
+void QueryTree::cast(const float origin[3], const float translation[3], const float half[3], float limit,
+                     Visit&& visit) const {
+    // The slab test of Kay and Kajiya 1986 with a reciprocal. Where the box does not move along an axis a huge number
+    // stands for it: what is outside is then entered far beyond any limit.
+    Float4 from_near[3], from_far[3], inverse[3];
+    int near[3], far[3];  // places of the sides that are entered and left, in floats from the start of a block
+    for (int d = 0; d < 3; ++d) {
+        constexpr int upper = 3 * block_size;
+        bool forwards = translation[d] >= 0.0f;
+        float grown = half[d] + margin * (absolute(origin[d]) + half[d]);
+        from_near[d] = splat<Float4>(forwards ? origin[d] + grown : origin[d] - grown);
+        from_far[d] = splat<Float4>(forwards ? origin[d] - grown : origin[d] + grown);
+        near[d] = d * block_size + (forwards ? 0 : upper), far[d] = d * block_size + (forwards ? upper : 0);
+        float along = absolute(translation[d]) > 1e-25f ? translation[d] : forwards ? 1e-25f : -1e-25f;
+        inverse[d] = splat<Float4>(1.0f / along);
+    }
+    auto keys_of = [&](const BoxBlock& box, float now, float keys[block_size]) {
+        const float* sides = box.lower[0];
+        uint32_t hits = 0;
+        for (int lanes = 0; lanes < block_size; lanes += 4) {
+            Float4 enter = splat<Float4>(0.0f), leave = splat<Float4>(now);
+            for (int d = 0; d < 3; ++d) {
+                enter = maximum((load_wide<Float4>(sides + near[d] + lanes) - from_near[d]) * inverse[d], enter);
+                leave = minimum((load_wide<Float4>(sides + far[d] + lanes) - from_far[d]) * inverse[d], leave);
+            }
+            enter = enter * splat<Float4>(1.0f - margin);
+            hits |= mask_bits(enter <= leave) << lanes;
+            store_wide(keys + lanes, enter);
+        }
+        return hits;
+    };
+    walk(limit, keys_of, visit);
+}
+
+template <class Visit>
+void QueryTree::overlapping(const float lower[3], const float upper[3], Visit&& visit) const {
+    float low[3], high[3];
+    for (int d = 0; d < 3; ++d) {
+        low[d] = maximum(lower[d] - margin * absolute(lower[d]), -FLT_MAX);
+        high[d] = minimum(upper[d] + margin * absolute(upper[d]), FLT_MAX);
+    }
+    const WideBox wide = spread(low, high);
+    auto keys_of = [&](const BoxBlock& box, float, float keys[block_size]) {
+        for (int k = 0; k < block_size; ++k) keys[k] = 0.0f;
+        return overlaps(box, wide);
+    };
+    walk(0.0f, keys_of, [&](uint32_t index) {
+        visit(index);
+        return 0.0f;
+    });
+}
+
+template <class Visit>
+void QueryTree::nearest(const float lower[3], const float upper[3], float limit, Visit&& visit) const {
+    const WideBox wide = spread(lower, upper);
+    auto keys_of = [&](const BoxBlock& box, float now, float keys[block_size]) {
+        uint32_t hits = 0;
+        for (int lanes = 0; lanes < block_size; lanes += 4) {
+            Float4 sum = splat<Float4>(0.0f), zero = sum;
+            for (int d = 0; d < 3; ++d) {
+                Float4 low = load_wide<Float4>(box.lower[d] + lanes), high = load_wide<Float4>(box.upper[d] + lanes);
+                Float4 gap = maximum(maximum(low - wide.upper[d], wide.lower[d] - high), zero);
+                sum = sum + gap * gap;
+            }
+            Float4 distance = square_root(sum) * splat<Float4>(1.0f - margin);
+            hits |= mask_bits(distance <= splat<Float4>(now)) << lanes;
+            store_wide(keys + lanes, distance);
+        }
+        return hits;
+    };
+    walk(limit, keys_of, visit);
+}
+
+}  // namespace lendulet

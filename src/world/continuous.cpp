@@ -1,0 +1,223 @@
+// After the solver: bodies must not have passed through anything.
+//
+// The solver's contacts reach ahead, so most fast bodies are stopped where they should be. What it lets through are
+// shapes that turn far within a step, thin meshes of many triangles, and bodies thrown at a wall by a contact of the
+// same step. All of these show in the same way: the inner core of a shape (geometry.h) reaches a surface that it was
+// clear of. Shapes that merely rest, slide or sink a little never do, so that this test disturbs no contact.
+//
+// A body is looked at only where some point of it moved farther than its shallowest core is deep. Where its core is
+// found to meet something, the whole shape's time of impact with that is taken, or the core's where the shapes
+// overlapped to begin with; the body is put where it was then, as the other body carried it on to the end of the step.
+// Momenta are left alone: the next step finds the contact and solves it as every other.
+#include "world/continuous.h"
+
+#include <algorithm>
+
+#include "collision/query/cast.h"
+#include "world/world_data.h"
+
+namespace lendulet {
+namespace {
+
+constexpr int suspects_per_task = 4;
+constexpr float full_turn = 2.0f * pi;
+
+// How a body moved in the step, about its centre of mass.
+struct BodyPath {
+    Pose start, end;
+    Vec3 axis{1.0f, 0.0f, 0.0f};
+    float angle = 0.0f;
+};
+
+bool is_still(const WorldData& world, uint32_t body) { return world.bodies.info[body].solver_index < reserved_bodies; }
+
+BodyPath path_of(const WorldData& world, uint32_t body, float dt) {
+    const BodyStore& bodies = world.bodies;
+    BodyPath path{bodies.pose[body], bodies.pose[body]};
+    if (is_still(world, body)) return path;
+    auto place = static_cast<size_t>(bodies.info[body].solver_index - reserved_bodies);
+    path.start = world.continuous.start[place];
+    Quat turn = path.end.orientation * conjugate(path.start.orientation);
+    const float* before = world.solver_bodies.start[place + reserved_bodies].w;
+    Vec3 v{turn.x, turn.y, turn.z}, w = bodies.angular_velocity(body);
+    w = 0.5f * (Vec3{before[0], before[1], before[2]} + w);
+    if (dot(v, w) < 0.0f) v = -v, turn.w = -turn.w;
+    float half_sine = length(v);
+    path.axis = half_sine > 1e-6f ? (1.0f / half_sine) * v : normalize(w);
+    path.angle = 2.0f * arc_tangent2(half_sine, turn.w);  // in [0, 2 pi], along w
+    // Both ends do not tell of full turns between, or whether it was the short way round: the spin does.
+    float spun = world.continuous.fraction[place] * dt * length(w), turns = (spun - path.angle) / full_turn;
+    path.angle += full_turn * static_cast<float>(static_cast<int>(turns + (turns < 0.0f ? -0.5f : 0.5f)));
+    return path;
+}
+
+// How far any point of the body moved, at most.
+float reach_of(const BodyPath& path, float radius) {
+    return length(path.end.position - path.start.position) + minimum(absolute(path.angle), full_turn) * radius;
+}
+
+// The path of one of the body's shapes, relative to `origin`.
+Motion motion_of(const WorldData& world, uint32_t collider, const BodyPath& path, Position origin) {
+    const Transform& local = world.colliders.local[collider];
+    Motion m;
+    m.pivot = to_double(path.start.position - origin);
+    m.rotation = path.start.orientation * local.rotation;
+    m.local_pivot = rotate_inverse(local.rotation, -local.translation);
+    m.translation = to_double(path.end.position - path.start.position);
+    bool centred_ball = world.colliders.geometry[collider].kind == GeometryKind::point && local.translation == Vec3{};
+    if (!centred_ball && absolute(path.angle) > 1e-5f) m.axis = path.axis, m.angle = path.angle;
+    return m;
+}
+
+// The pose of a body along its path.
+Pose pose_at(const BodyPath& path, double t) {
+    auto f = static_cast<float>(t);
+    return {path.start.position + f * (path.end.position - path.start.position),
+            normalize(rotation_about(path.axis, f * path.angle) * path.start.orientation)};
+}
+
+bool may_meet(const WorldData& world, uint32_t a, uint32_t b) {
+    const ColliderInfo &ca = world.colliders.info[a], &cb = world.colliders.info[b];
+    return ca.body != cb.body && !ca.is_trigger && !cb.is_trigger && filters_match(ca.filter, cb.filter) &&
+           !world.joints.keeps_apart(ca.body, cb.body);
+}
+
+// What a body met first.
+struct Impact {
+    double fraction = 2.0;
+    uint32_t mine = no_slot, other = no_slot;  // colliders
+    void offer(double t, uint32_t a, uint32_t b) {
+        if (t < fraction || (t == fraction && (b < other || (b == other && a < mine))))
+            fraction = t, mine = a, other = b;
+    }
+};
+
+void meet(const WorldData& world, uint32_t mine, const BodyPath& path, uint32_t other, float dt, Impact& impact) {
+    BodyPath other_path = path_of(world, world.colliders.info[other].body, dt);
+    Position origin = path.start.position;
+    const Geometry &a = world.colliders.geometry[other], &b = world.colliders.geometry[mine];
+    Motion motion_a = motion_of(world, other, other_path, origin), motion_b = motion_of(world, mine, path, origin);
+    CastHit deep, first;
+    double limit = minimum(impact.fraction, 1.0);
+    if (!cast_shapes(a, motion_a, inner_core(b).geometry, motion_b, limit, deep, true)) return;
+    bool touching = !cast_shapes(a, motion_a, b, motion_b, deep.fraction, first) || first.overlapping;
+    impact.offer(touching ? deep.fraction : first.fraction, mine, other);
+}
+
+// Bounds of everything that the body passes.
+void bounds_of(const BodyPath& path, float radius, float lower[3], float upper[3]) {
+    Vec3 r{radius, radius, radius};
+    Vec3 a = from_origin(path.start.position), b = from_origin(path.end.position);
+    Vec3 low = minimum(a, b) - r, high = maximum(a, b) + r;
+    for (int k = 0; k < 3; ++k) lower[k] = component(low, k), upper[k] = component(high, k);
+}
+
+// The first impact of a body with colliders that wanted(body) lets through.
+template <class Wanted>
+Impact first_impact(const WorldData& world, uint32_t body, const BodyPath& path, float dt, Array<uint32_t>& near,
+                    Wanted&& wanted) {
+    float lower[3], upper[3];
+    bounds_of(path, world.bodies.info[body].radius, lower, upper);
+    near.clear();
+    world.broad_phase.query_box(lower, upper, near);
+    std::sort(near.begin(), near.end());  // order: total
+    Impact impact;
+    for (uint32_t other : near) {
+        if (!world.colliders.info[other].boxed || !wanted(world.colliders.info[other].body)) continue;
+        for (uint32_t c = world.bodies.info[body].first_collider; c != no_slot; c = world.colliders.info[c].next)
+            if (may_meet(world, c, other)) meet(world, c, path, other, dt, impact);
+    }
+    return impact;
+}
+
+// Puts the body where it was at the impact, carried on by what it met.
+void stop(WorldData& world, uint32_t body, const BodyPath& path, const Impact& impact, float dt) {
+    BodyPath carrier = path_of(world, world.colliders.info[impact.other].body, dt);
+    Pose then = pose_at(path, impact.fraction), carrier_then = pose_at(carrier, impact.fraction);
+    Vec3 arm = rotate_inverse(carrier_then.orientation, then.position - carrier_then.position);
+    Pose& pose = world.bodies.pose[body];
+    if (is_still(world, world.colliders.info[impact.other].body)) {
+        pose = then;
+    } else {
+        pose.position = carrier.end.position + rotate(carrier.end.orientation, arm);
+        pose.orientation = normalize(carrier.end.orientation * conjugate(carrier_then.orientation) * then.orientation);
+    }
+    world.bodies.momenta[body].x_low = {};
+    BodyInfo& info = world.bodies.info[body];
+    info.stopped = true;
+    world.continuous.fraction[static_cast<size_t>(info.solver_index - reserved_bodies)] *=
+        static_cast<float>(impact.fraction);
+}
+
+// Bodies in the way of kinematic ones that moved far.
+void suspect_swept(WorldData& world, uint32_t kinematic, const BodyPath& path, Array<uint32_t>& near) {
+    float lower[3], upper[3];
+    bounds_of(path, world.bodies.info[kinematic].radius, lower, upper);
+    near.clear();
+    world.broad_phase.query_box(lower, upper, near);
+    for (uint32_t c : near) {
+        const BodyInfo& info = world.bodies.info[world.colliders.info[c].body];
+        if (info.type == BodyType::dynamic && info.solver_index >= reserved_bodies)
+            world.continuous.is_suspect[static_cast<size_t>(info.solver_index - reserved_bodies)] = 1;
+    }
+}
+
+void find_suspects(WorldData& world, float dt) {
+    ContinuousData& c = world.continuous;
+    c.suspects.clear();
+    c.bullets.clear();
+    c.is_suspect.assign(world.awake.size(), 0);
+    c.fraction.assign(world.awake.size(), 1.0f);
+    for (size_t i = 0; i < world.awake.size(); ++i) {
+        BodyInfo& info = world.bodies.info[world.awake[i]];
+        info.stopped = false;
+        BodyPath path = path_of(world, world.awake[i], dt);
+        if (info.contained || !(reach_of(path, info.radius) > info.depth)) continue;
+        if (info.type == BodyType::kinematic) suspect_swept(world, world.awake[i], path, c.near[0]);
+        else c.is_suspect[i] = 1;
+    }
+    for (size_t i = 0; i < world.awake.size(); ++i) {
+        const BodyInfo& info = world.bodies.info[world.awake[i]];
+        if (!c.is_suspect[i] || info.contained) continue;
+        c.suspects.push_back(static_cast<uint32_t>(i));
+        if (info.bullet) c.bullets.push_back(static_cast<uint32_t>(i));
+    }
+}
+
+}  // namespace
+
+void remember_poses(WorldData& world) {
+    if (!world.config.continuous) return;
+    world.continuous.start.resize_unset(world.awake.size());
+    for (size_t i = 0; i < world.awake.size(); ++i) world.continuous.start[i] = world.bodies.pose[world.awake[i]];
+}
+
+void stop_at_impacts(WorldData& world, float dt) {
+    world.statistics.stopped_bodies = 0;
+    if (!world.config.continuous) return;
+    find_suspects(world, dt);
+    ContinuousData& c = world.continuous;
+    // Against what nothing can push: each body for itself.
+    world.tasks.for_each(c.suspects.count(), suspects_per_task, [&](int begin, int end, int worker) {
+        for (int i = begin; i < end; ++i) {
+            uint32_t body = world.awake[c.suspects[static_cast<size_t>(i)]];
+            BodyPath path = path_of(world, body, dt);
+            Impact impact =
+                first_impact(world, body, path, dt, c.near[static_cast<size_t>(worker)],
+                             [&](uint32_t other) { return world.bodies.info[other].type != BodyType::dynamic; });
+            if (impact.fraction <= 1.0) stop(world, body, path, impact, dt);
+        }
+    });
+    // Bullets against other bodies as these now move, one after the other.
+    for (uint32_t i : c.bullets) {
+        uint32_t body = world.awake[i];
+        BodyPath path = path_of(world, body, dt);
+        Impact impact = first_impact(world, body, path, dt, c.near[0], [&](uint32_t other) {
+            return world.bodies.info[other].type == BodyType::dynamic;
+        });
+        if (impact.fraction <= 1.0) stop(world, body, path, impact, dt);
+    }
+    for (uint32_t i : c.suspects) world.statistics.stopped_bodies += world.bodies.info[world.awake[i]].stopped;
+}
+
+}  // namespace lendulet

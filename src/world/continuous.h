@@ -1,0 +1,26 @@
+// Continuous collision: bodies that moved so far within a step that they may have passed through something are put back
+// to where they met it first. See docs/queries.md.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/memory.h"
+#include "lendulet/math.h"
+
+namespace lendulet {
+
+struct ContinuousData {
+    Array<Pose> start;                  // of the awake bodies at the start of the step, in their order
+    Array<uint32_t> suspects, bullets;  // places in that order, ascending
+    Array<uint8_t> is_suspect;
+    Array<float> fraction;              // of the step after which a body was stopped, 1 where it was not
+    std::vector<Array<uint32_t>> near;  // by worker: colliders near a suspect
+
+    ContinuousData(const Memory* memory, int workers)
+        : start(memory), suspects(memory), bullets(memory), is_suspect(memory), fraction(memory) {
+        for (int i = 0; i < workers; ++i) near.emplace_back(memory);
+    }
+};
+
+}  // namespace lendulet

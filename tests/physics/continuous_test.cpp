@@ -1,0 +1,304 @@
+// Cases A40 and A41: nothing passes through anything, however fast it flies or spins.
+#include <gtest/gtest.h>
+
+#include "physics/cases.h"
+#include "scale.h"
+#include "world/support.h"
+
+namespace lendulet::cases {
+namespace {
+
+// A closed surface of triangles, or a single sheet of them, in place of a box.
+enum class Wall { box, closed_mesh, sheet };
+
+TriangleMesh wall_mesh(Vec3 half, bool closed) {
+    constexpr int cells = 6;
+    std::vector<Vec3> vertices;
+    std::vector<uint32_t> indices;
+    for (float side : {-1.0f, 1.0f}) {
+        if (!closed && side > 0.0f) break;
+        auto first = static_cast<uint32_t>(vertices.size());
+        auto place = [](int i) { return 2.0f * static_cast<float>(i) / cells - 1.0f; };
+        for (int i = 0; i <= cells; ++i)
+            for (int k = 0; k <= cells; ++k)
+                vertices.push_back({closed ? side * half.x : 0.0f, half.y * place(i), half.z * place(k)});
+        for (uint32_t i = 0; i < cells; ++i)
+            for (uint32_t k = 0; k < cells; ++k) {
+                uint32_t a = first + i * (cells + 1) + k, b = a + cells + 1;
+                for (uint32_t v : {a, a + 1, b, a + 1, b + 1, b}) indices.push_back(v);
+            }
+    }
+    return TriangleMesh::from_triangles(vertices, indices).value();
+}
+
+Shape wall_shape(Wall wall, Vec3 half) {
+    if (wall == Wall::box) return Box{half};
+    return wall_mesh(half, wall == Wall::closed_mesh);
+}
+
+// A ball at `speed` towards a wall across x = 0, hitting it at an angle; `phase` moves the impact within its step.
+// True where it never came to the other side.
+bool held_by_wall(Wall wall, float thickness, float speed, float phase, int solver_steps, float step) {
+    World world = WorldBuilder().no_gravity().sleep(false).solver_steps(solver_steps).build().value();
+    world.add_static_body({.shape = wall_shape(wall, {0.5f * thickness, 2.0f, 2.0f})}).value();
+    BodyId ball = world
+                      .add_rigid_body({.shape = Sphere{0.05f},
+                                       .position = {-0.2f - phase * speed * step, 0.1f, 0.07f - 0.3f * phase},
+                                       .velocity = {speed, 0.05f * speed * phase, 0.0f}})
+                      .value();
+    for (int i = 0; i < 8; ++i) {
+        world.update(step).value();
+        if (world.get(ball).position().x > 0.0f) return false;
+    }
+    return true;
+}
+
+// 400 speeds and phases for each wall.
+void expect_held(Wall wall, float thickness) {
+    int escaped = 0, count = 0;
+    const int speeds = scaled(50, 4);
+    for (int i = 0; i < speeds; ++i) {
+        float part = static_cast<float>(i) / static_cast<float>(speeds - 1);
+        for (int phase = 0; phase < 8; ++phase, ++count)
+            escaped += !held_by_wall(wall, thickness, 20.0f + 980.0f * part,
+                                     0.02f + 0.93f * static_cast<float>(phase) / 7.0f, phase % 2 ? 8 : 4, dt);
+    }
+    EXPECT_EQ(escaped, 0) << "of " << count;
+}
+
+TEST(Continuous, A40BallsAgainstAWallOf20mm) { expect_held(Wall::box, 0.02f); }
+TEST(Continuous, A40BallsAgainstAMeshOf1mm) { expect_held(Wall::closed_mesh, 0.001f); }
+TEST(Continuous, A40BallsAgainstASheet) { expect_held(Wall::sheet, 0.0f); }
+
+TEST(Continuous, AtAnyStep) {
+    int escaped = 0;
+    for (float step : {1.0f / 240.0f, 1.0f / 30.0f, 0.1f, 0.5f})
+        for (float speed : {30.0f, 150.0f, 700.0f})
+            for (Wall wall : {Wall::box, Wall::closed_mesh, Wall::sheet})
+                for (float phase : {0.1f, 0.5f, 0.9f}) escaped += !held_by_wall(wall, 0.005f, speed, phase, 8, step);
+    EXPECT_EQ(escaped, 0);
+}
+
+// Where a body is put, it touches: a ball without bounce ends at the wall, not in front of it or inside.
+TEST(Continuous, A40ImpactsAreWhereTheSurfacesMeet) {
+    Worst gap("A40 distance from the wall after the impact", 5.0, "mm");
+    for (Wall wall : {Wall::box, Wall::closed_mesh, Wall::sheet})
+        for (float speed : {25.0f, 120.0f, 450.0f, 1000.0f}) {
+            World world = WorldBuilder().no_gravity().no_friction().sleep(false).build().value();
+            world.add_static_body({.shape = wall_shape(wall, {0.0005f, 2.0f, 2.0f})}).value();
+            BodyId ball = world
+                              .add_rigid_body({.shape = Sphere{0.05f},
+                                               .position = {-0.6f * speed * dt - 0.06f, 0.11f, 0.03f},
+                                               .velocity = {speed, 0.0f, 0.0f}})
+                              .value();
+            world.update(dt).value();
+            world.update(dt).value();
+            float surface = wall == Wall::sheet ? 0.0f : -0.0005f;
+            gap.add(1000.0 * (surface - (world.get(ball).position().x + 0.05f)));
+        }
+    gap.finish();
+}
+
+// A body that flies beside an obstacle, and slides over fine triangles, is not held up.
+TEST(Continuous, NothingStopsWhatPassesBeside) {
+    World world = WorldBuilder().no_gravity().no_friction().sleep(false).build().value();
+    world.add_static_body({.shape = wall_mesh({0.0005f, 2.0f, 2.0f}, true)}).value();
+    BodyId ball =
+        world
+            .add_rigid_body({.shape = Sphere{0.05f}, .position = {-4.0f, 2.3f, 0.0f}, .velocity = {300.0f, 0.0f, 0.0f}})
+            .value();
+    world.update(dt).value();
+    EXPECT_EQ(world.statistics().stopped_bodies, 0);
+    EXPECT_NEAR(world.get(ball).position().x, 1.0f, 1e-4f);
+}
+
+TEST(Continuous, SlidingOverAMeshIsUndisturbed) {
+    World world = WorldBuilder().no_friction().sleep(false).build().value();
+    world.add_static_body({.shape = testing::wavy_ground(60, 30.0f, 0.0f)}).value();
+    BodyId box = world.add_rigid_body({.shape = Box{{0.1f, 0.05f, 0.1f}}, .position = {-25.0f, 0.05f, 0.3f}}).value();
+    advance(world, 30);
+    world.get(box).set_velocity({40.0f, 0.0f, 0.0f}).value();
+    for (int i = 0; i < 60; ++i) {
+        world.update(dt).value();
+        EXPECT_EQ(world.statistics().stopped_bodies, 0) << i;
+    }
+    EXPECT_NEAR(world.get(box).position().x, 15.0f, 0.05f);
+    EXPECT_NEAR(world.get(box).velocity().x, 40.0f, 0.04f);
+}
+
+// Kinematic bodies push what is in their way in front of them, also thin ones.
+TEST(Continuous, NothingPassesThroughWhatIsMoved) {
+    int escaped = 0, count = 0;
+    for (float speed : {10.0f, 40.0f, 120.0f, 400.0f})
+        for (Wall wall : {Wall::box, Wall::closed_mesh, Wall::sheet})
+            for (float phase : {0.1f, 0.4f, 0.7f}) {
+                World world = WorldBuilder().no_gravity().sleep(false).build().value();
+                BodyId paddle = world
+                                    .add_rigid_body({.shape = wall_shape(wall, {0.005f, 1.0f, 1.0f}),
+                                                     .position = {-0.3f - phase * speed * dt, 0.0f, 0.0f},
+                                                     .velocity = {speed, 0.0f, 0.0f},
+                                                     .kinematic = true})
+                                    .value();
+                BodyId ball = world.add_rigid_body({.shape = Sphere{0.05f}, .position = {0.0f, 0.1f, 0.2f}}).value();
+                for (int i = 0; i < 6; ++i) {
+                    world.update(dt).value();
+                    ++count;
+                    if (world.get(ball).position().x < world.get(paddle).position().x) {
+                        ++escaped;
+                        break;
+                    }
+                }
+            }
+    EXPECT_EQ(escaped, 0) << "of " << count;
+}
+
+// Bullets and the bodies they hit: without the flag light thin plates may be passed, with it never.
+TEST(Continuous, BulletsMeetMovingBodies) {
+    int escaped = 0;
+    for (float speed : {50.0f, 200.0f, 800.0f})
+        for (float phase : {0.1f, 0.45f, 0.8f})
+            for (float towards : {0.0f, -30.0f, 15.0f}) {
+                World world = WorldBuilder().no_gravity().sleep(false).build().value();
+                BodyId plate = world
+                                   .add_rigid_body({.shape = Box{{0.005f, 0.5f, 0.5f}},
+                                                    .velocity = {towards, 0.0f, 0.0f},
+                                                    .density = 20000.0f})
+                                   .value();
+                BodyId ball = world
+                                  .add_rigid_body({.shape = Capsule{0.02f, 0.02f},
+                                                   .position = {-0.2f - phase * speed * dt, 0.1f, 0.1f},
+                                                   .velocity = {speed, 0.0f, 0.0f},
+                                                   .angular_velocity = {0.0f, 0.0f, 90.0f},
+                                                   .density = 500.0f,
+                                                   .bullet = true})
+                                  .value();
+                for (int i = 0; i < 5; ++i) {
+                    world.update(dt).value();
+                    RigidBodyRef body = world.get(plate);
+                    Vec3 local = rotate_inverse(body.orientation(), world.get(ball).position() - body.position());
+                    if (local.x > 0.0f) {
+                        ++escaped;
+                        break;
+                    }
+                }
+            }
+    EXPECT_EQ(escaped, 0);
+}
+
+// A rod of 2 x 0.04 that spins beside a wall or a pole, its middle drawn to where it is by nothing. It hits and flies
+// away on its own side; no part of it is ever beyond the wall, and its energy never rises.
+TEST(Continuous, A41SpinningRods) {
+    int through = 0, count = 0;
+    Worst rise("A41 rise of energy", 0.1, "%");
+    const int speeds = scaled(50, 3);
+    for (int i = 0; i < speeds; ++i) {
+        float spin = 100.0f + 400.0f * static_cast<float>(i) / static_cast<float>(speeds - 1);
+        for (int k = 0; k < 4; ++k, ++count) {
+            bool pole = k % 2 == 1;
+            World world = WorldBuilder().no_gravity().no_friction().sleep(false).build().value();
+            Shape obstacle = pole ? Shape{Cylinder{1.0f, 0.01f}} : Shape{Box{{0.01f, 2.0f, 2.0f}}};
+            Quat along_z = rotation_about({1.0f, 0.0f, 0.0f}, 0.5f * pi);
+            float distance = pole ? 0.5f : 0.7f;
+            world
+                .add_static_body(
+                    {.shape = obstacle, .position = {distance, 0.0f, 0.0f}, .orientation = pole ? along_z : Quat{}})
+                .value();
+            BodyId rod =
+                world
+                    .add_rigid_body({.shape = k < 2 ? Shape{Box{{0.02f, 1.0f, 0.02f}}} : Shape{Capsule{0.98f, 0.02f}},
+                                     .orientation = rotation_about({0.0f, 0.0f, 1.0f}, 0.3f * static_cast<float>(k)),
+                                     .angular_velocity = {0.0f, 0.0f, k == 2 ? -spin : spin}})
+                    .value();
+            double energy = world.kinetic_energy(), most = energy;
+            for (int step = 0; step < 20; ++step) {
+                world.update(dt).value();
+                most = std::max(most, world.kinetic_energy());
+                RigidBodyRef body = world.get(rod);
+                bool beyond = false;
+                if (!pole) {  // no point of the rod's axis on the far side
+                    for (float end : {-1.0f, 1.0f})
+                        beyond =
+                            beyond || (body.position() + rotate(body.orientation(), {0.0f, end, 0.0f})).x > distance;
+                }
+                beyond = beyond || (!pole && body.position().x > distance);
+                if (beyond) {
+                    ++through;
+                    break;
+                }
+            }
+            rise.add(100.0 * (most / energy - 1.0));
+        }
+    }
+    EXPECT_EQ(through, 0) << "of " << count;
+    rise.finish();
+}
+
+// A fan of three blades on a hinge, and a pole between them that they cannot pass.
+TEST(Continuous, A41AFanStopsAtAPole) {
+    for (float spin : {100.0f, 230.0f, 500.0f}) {
+        World world = WorldBuilder().no_gravity().sleep(false).build().value();
+        std::vector<ColliderDef> blades;
+        for (int i = 0; i < 3; ++i) {
+            Quat turn = rotation_about({0.0f, 0.0f, 1.0f}, static_cast<float>(i) * 2.0f * pi / 3.0f);
+            blades.push_back({.shape = Box{{0.02f, 0.45f, 0.05f}}, .local = {rotate(turn, {0.0f, 0.5f, 0.0f}), turn}});
+        }
+        BodyId fan = world.add_rigid_body({.angular_velocity = {0.0f, 0.0f, spin}, .colliders = blades}).value();
+        BodyId base = world.add_static_body({.shape = Sphere{0.02f}}).value();
+        world
+            .add_static_body({.shape = Cylinder{0.5f, 0.02f},
+                              .position = {0.6f, 0.0f, 0.0f},
+                              .orientation = rotation_about({1.0f, 0.0f, 0.0f}, 0.5f * pi)})
+            .value();
+        JointDef hinge = world.joint_at(JointType::hinge, base, fan, {}, {0.0f, 0.0f, 1.0f}).value();
+        world.add_joint(hinge).value();
+        const double energy = world.kinetic_energy();
+        float turned = 0.0f;
+        Quat before = world.get(fan).orientation();
+        for (int i = 0; i < 60; ++i) {
+            world.update(dt / 8.0f).value();  // so that less than half a turn goes between two looks
+            Quat now = world.get(fan).orientation(), d = now * conjugate(before);
+            if (d.w < 0.0f) d = {-d.x, -d.y, -d.z, -d.w};
+            turned += 2.0f * arc_tangent2(d.z, d.w);
+            before = now;
+            EXPECT_LT(absolute(turned), 2.0f * pi / 3.0f) << "spin " << spin << " step " << i;
+            EXPECT_LE(world.kinetic_energy(), 1.01 * energy) << "spin " << spin << " step " << i;
+        }
+    }
+}
+
+// The same bits for any number of workers, and nothing to do where nothing is fast.
+TEST(Continuous, IsDeterministicAndIdleWhereNothingIsFast) {
+    uint64_t hash = 0;
+    for (int workers : {1, 2, 5}) {
+        World world = WorldBuilder().workers(workers).build().value();
+        world.add_static_body({.shape = wall_mesh({0.0005f, 6.0f, 6.0f}, true), .position = {3.0f, 0.0f, 0.0f}})
+            .value();
+        testing::add_floor(world);
+        for (int i = 0; i < 60; ++i) {
+            auto f = static_cast<float>(i);
+            world
+                .add_rigid_body(
+                    {.shape = i % 2 ? Shape{Box{{0.05f, 0.3f, 0.05f}}} : Shape{Sphere{0.08f}},
+                     .position = {-1.0f - 0.05f * f, 0.6f + 0.4f * static_cast<float>(i % 8), 0.35f * f - 5.0f},
+                     .velocity = {100.0f + 5.0f * f, 0.0f, 0.0f},
+                     .angular_velocity = {0.0f, 3.0f * f, 200.0f},
+                     .bullet = i % 3 == 0})
+                .value();
+        }
+        int stopped = 0;
+        for (int i = 0; i < 30; ++i) world.update(dt).value(), stopped += world.statistics().stopped_bodies;
+        EXPECT_GT(stopped, 0);
+        if (workers == 1) hash = world.hash();
+        EXPECT_EQ(world.hash(), hash) << workers;
+    }
+    World calm = WorldBuilder().build().value();
+    testing::add_floor(calm);
+    testing::add_stack(calm, 0.0f, 5);
+    for (int i = 0; i < 60; ++i) {
+        calm.update(dt).value();
+        EXPECT_EQ(calm.statistics().stopped_bodies, 0);
+    }
+}
+
+}  // namespace
+}  // namespace lendulet::cases
