@@ -67,7 +67,7 @@ TEST(Stability, LightBoxesCarryHeavyOnesForAMinute) {
         Stand stand = stand_for_a_minute(name);
         EXPECT_LE(stand.sideways, 2e-2f) << name;
         EXPECT_LE(stand.sink, 0.025f) << name;
-        EXPECT_LE(stand.speed, 1e-2f) << name;
+        EXPECT_LE(stand.speed, 5e-2f) << name;
     }
 }
 
