@@ -87,7 +87,8 @@ void finish_step(WorldData& world, float dt) {
     s.overflow_manifolds = world.solver.overflow();
     s.joints = world.joints.count();
     s.bytes_per_body = BodyStore::bytes_per_body() + sizeof(BodyState) + sizeof(BodyInertia) + sizeof(BodyMotion);
-    s.bytes_per_manifold = 2 * sizeof(ContactRecord) + sizeof(ColliderPair) + sizeof(PairCache) +
+    s.bytes_per_manifold = sizeof(ContactRecord) + sizeof(FoundSeparations) + sizeof(ColliderPair) + sizeof(PairCache) +
+                           sizeof(KeptPose) +
                            (world.active.empty() ? 0 : world.solver.row_bytes() / world.active.size());
     world.last_h = dt / static_cast<float>(world.config.solver_steps);
     world.time += dt;
