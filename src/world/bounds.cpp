@@ -43,10 +43,11 @@ void set_frame(WorldData& world, uint32_t slot, float turn) {
     f.velocity[0] = v.x, f.velocity[1] = v.y, f.velocity[2] = v.z;
     f.arm[0] = place.arm.x, f.arm[1] = place.arm.y, f.arm[2] = place.arm.z;
     f.near = minimum(contact_margin, 0.25f * info.radius);
-    f.reach = minimum(length(place.arm) + info.radius, 1e30f);
-    f.turning = turn > 0.0f ? minimum(turn, 2.0f) * f.reach : 0.0f;
+    // Of what never turns no point moves, however far out.
+    f.reach = body.type == BodyType::fixed ? 0.0f : minimum(length(place.arm) + info.radius, 1e30f);
+    f.turning = minimum(turn, 2.0f) * f.reach;
     f.half[0] = geometry.size.x, f.half[1] = geometry.size.y, f.half[2] = geometry.size.z;
-    f.rounding = geometry.rounding;
+    f.radius = info.radius;
 }
 
 void bound_moving(WorldData& world, uint32_t slot, float dt, BroadBox& box) {

@@ -45,6 +45,7 @@ uint32_t PairTable::take_cache() {
         free_caches.push_back(static_cast<uint32_t>(caches.size()));
         caches.push_back(PairCache{});
         poses.push_back(KeptPose{});
+        free_caches.reserve(caches.capacity());  // room for all, so that giving back takes no memory
     }
     uint32_t cache = free_caches.back();
     free_caches.pop_back();
@@ -70,8 +71,11 @@ void PairTable::update(Array<BoxPair>& boxes) {
     }
     j = 0;
     begun.clear();
+    begun.reserve(now.capacity());
     for (size_t i = 0; i < boxes.size(); ++i) {
-        ColliderPair p{boxes[i].a, boxes[i].b, 0, 0, 0, 0, PairKind::unsorted, false, false, true};
+        ColliderPair p{};
+        p.a = boxes[i].a, p.b = boxes[i].b;
+        p.begun = true;
         while (j < before.size() && key(before[j]) < key(p)) ++j;
         if (j < before.size() && key(before[j]) == key(p) && before[j].cache != no_cache) {
             p = before[j];
@@ -89,6 +93,7 @@ void PairTable::place_records(ColliderPair& pair, bool mesh) {
     if (free.empty()) {
         pair.first_record = record_count;
         record_count += pair.capacity;
+        free.reserve(caches.capacity());
     } else {
         pair.first_record = free.back();
         free.pop_back();

@@ -26,8 +26,10 @@ struct ColliderPair {
     uint32_t cache;           // index into PairTable::caches; no_cache: a collider was removed since the step
     uint32_t first_record;    // of this pair's own stretch of records, which stays the same while the pair lasts
     uint8_t capacity, count;  // manifolds: room, and those found
+    uint8_t prepared;         // records whose lasting parts are filled in
     PairKind kind;
     bool flipped;  // B's body is not moved by constraints: the manifolds' A is B
+    bool fixed_a;  // that of A is not
     bool hit;      // of a trigger: overlaps
     bool begun;    // not yet collided
 };
@@ -53,8 +55,8 @@ struct PairTable {
           scratch_(memory),
           counts_(memory) {}
 
-    // Replaces `now` by `boxes` (which it sorts) and carries what is kept of pairs that go on over from the list before,
-    // which moves to `before`.
+    // Replaces `now` by `boxes` (which it sorts) and carries what is kept of pairs that go on over from the list
+    // before, which moves to `before`.
     void update(Array<BoxPair>& boxes);
     // Gives a pair its stretch of records, for one manifold or for those of a mesh.
     void place_records(ColliderPair& pair, bool mesh);

@@ -76,13 +76,6 @@ void finish_step(WorldData& world, float dt) {
     s.awake_bodies = world.awake.count();
     s.pairs = world.pairs.now.count();
     s.manifolds = world.touching.count();
-    s.contact_points = 0;
-    s.max_penetration = 0.0f;
-    for (uint32_t i : world.touching) {
-        const ContactRecord& r = world.records[i];
-        for (int j = 0; j < r.point_count; ++j) s.max_penetration = maximum(s.max_penetration, -r.points[j].separation);
-        for (int j = 0; j < r.point_count; ++j) s.contact_points += r.points[j].separation <= 0.0f;
-    }
     s.colours = world.solver.colour_count();
     s.overflow_manifolds = world.solver.overflow();
     s.joints = world.joints.count();

@@ -25,9 +25,11 @@ namespace lendulet {
 struct NarrowScratch {
     MotionBatch motion;
     RefreshBatch kept;
-    BoxBatch boxes;
+    BoxLists<batch_capacity, 16> boxes;
     uint32_t tested[MotionBatch::room];  // pairs of `motion`
-    uint32_t boxed[BoxBatch::room];      // pairs of `boxes`
+    uint32_t boxed[batch_capacity];      // pairs of `boxes`
+    int contact_points;                  // those that touch or overlap, and the deepest overlap, m
+    float max_penetration;
 };
 
 struct WorldData {
@@ -58,7 +60,7 @@ struct WorldData {
     Array<ContactRecord> records;
     Array<FoundSeparations> found_separations;  // by record
     Array<uint32_t> touching;                   // records with points, in order
-    Array<uint32_t> active;    // those of them that are solved: at least one body awake
+    Array<uint32_t> active;                     // those of them that are solved: at least one body awake
     Array<Overlap> overlaps;
     Array<uint32_t> active_joints;  // slots of the joints that are solved, in creation order
     Array<JointRecord> joint_records;

@@ -21,18 +21,29 @@ struct alignas(64) BoxManifold {
 };
 static_assert(sizeof(BoxManifold) == 128);
 
-// Lists of one chunk. Whole blocks of lanes are read and written: room beyond `count` for the widest.
+// Pairs to collide. Whole blocks of lanes are read and written, so the arrays need room beyond `count` for the widest;
+// see BoxLists.
 struct BoxBatch {
-    static constexpr int room = batch_capacity + 16;
     const ShapeFrame* frames;
-    int count = 0;
-    int32_t a[room], b[room];  // indices of frames
-    float margin[room];
+    int count;
+    int32_t *a, *b;  // indices of frames
+    float* margin;   // surfaces farther apart than this give no points, m
     // In: 1 + the axis of the last contact, 0: none. Out: that of this one, where it was found by an axis.
-    float feature[room];
-    float clearance[room];   // out: the distance is at least this, m (the largest separation along an axis)
-    BoxManifold out[room];   // valid where clearance <= margin
-    int32_t list[2][room];   // scratch: pairs whose faces and whose edges meet
+    float* feature;
+    float* clearance;  // out: the distance is at least this, m (the largest separation along an axis)
+    BoxManifold* out;  // valid where clearance <= margin
+    int32_t* list[2];  // scratch: pairs whose faces and whose edges meet
+};
+
+template <int Pairs, int Lanes>
+struct BoxLists {
+    static constexpr int room = Pairs + Lanes;
+    int32_t a[room], b[room], list[2][room];
+    float margin[room], feature[room], clearance[room];
+    BoxManifold out[room];
+    BoxBatch batch(const ShapeFrame* frames, int count) {
+        return {frames, count, a, b, margin, feature, clearance, out, {list[0], list[1]}};
+    }
 };
 
 }  // namespace lendulet

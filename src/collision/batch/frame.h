@@ -15,7 +15,7 @@ struct alignas(64) ShapeFrame {
     float arm[3];       // the shape's position from the centre of mass, world axes
     float reach;        // farthest that a point of the shape is from the centre of mass, m
     float half[3];      // half extents of boxes
-    float rounding;
+    float radius;       // of a sphere about the shape's position that holds it
     uint32_t unused[12];
 };
 static_assert(sizeof(ShapeFrame) == 128);

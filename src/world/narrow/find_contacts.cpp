@@ -2,6 +2,8 @@
 //
 // Each pair owns its records, its cache and its kept pose; nothing else is written for it, and its results depend on
 // the poses and on what it owns. So pairs may be taken in any order by any worker, and gathered into batches at will.
+#include <new>
+
 #include "world/narrow/manifold_records.h"
 #include "world/world_data.h"
 
@@ -30,6 +32,7 @@ void begin_pair(WorldData& world, ColliderPair& p) {
     const ColliderStore& c = world.colliders;
     const Geometry &a = c.geometry[p.a], &b = c.geometry[p.b];
     p.flipped = !moved_by_constraints(world.bodies.info[c.info[p.b].body]);
+    p.fixed_a = p.flipped || !moved_by_constraints(world.bodies.info[c.info[p.a].body]);
     if (c.info[p.a].is_trigger || c.info[p.b].is_trigger) {
         p.kind = PairKind::trigger;
         return;
@@ -43,12 +46,19 @@ void begin_pair(WorldData& world, ColliderPair& p) {
 uint32_t collider_a(const ColliderPair& p) { return p.flipped ? p.b : p.a; }
 uint32_t collider_b(const ColliderPair& p) { return p.flipped ? p.a : p.b; }
 
+// Collided by the frames, of which one line tells all.
 CollidePair collide_input(const WorldData& world, const ColliderPair& p, float margin) {
-    const ColliderStore& c = world.colliders;
     uint32_t a = collider_a(p), b = collider_b(p);
-    const ColliderPlace &pa = c.place[a], &pb = c.place[b];
-    Vec3 centres = world.bodies.pose[c.info[b].body].position - world.bodies.pose[c.info[a].body].position;
-    return {&c.geometry[a], &c.geometry[b], pa.rotation, pb.rotation, centres + (pb.arm - pa.arm), margin};
+    const ShapeFrame &fa = world.frames[a], &fb = world.frames[b];
+    auto quat = [](const float* q) { return Quat{q[0], q[1], q[2], q[3]}; };
+    auto vector = [](const float* v) { return Vec3{v[0], v[1], v[2]}; };
+    Vec3 offset = (vector(fb.centre) - vector(fa.centre)) + (vector(fb.arm) - vector(fa.arm));
+    return {&world.colliders.geometry[a],
+            &world.colliders.geometry[b],
+            quat(fa.rotation),
+            quat(fb.rotation),
+            offset,
+            margin};
 }
 
 // One chunk of pairs, from the test whether they have moved to their records.
@@ -56,7 +66,7 @@ class Chunk {
 public:
     Chunk(WorldData& world, NarrowScratch& scratch, float dt, float scale)
         : world_(world), scratch_(scratch), scale_(scale) {
-        scratch_.motion.frames = scratch_.kept.frames = scratch_.boxes.frames = world.frames.data();
+        scratch_.motion.frames = scratch_.kept.frames = world.frames.data();
         scratch_.motion.poses = scratch_.kept.poses = world.pairs.poses.data();
         scratch_.motion.dt = dt;
         scratch_.motion.fall = 0.5f * dt * dt * length(world.config.gravity);
@@ -67,7 +77,7 @@ public:
     void run(int begin, int end) {
         gather(static_cast<uint32_t>(begin), static_cast<uint32_t>(end));
         world_.narrow_kernels.test_motion(scratch_.motion);
-        scratch_.kept.count = scratch_.boxes.count = 0;
+        scratch_.kept.count = boxed_ = 0;
         for (int i = 0; i < scratch_.motion.count; ++i) sort(i);
         flush_kept();
         collide_boxes();
@@ -86,7 +96,10 @@ private:
             }
             uint32_t a = collider_a(p), b = collider_b(p);
             if (world_.still[a] & world_.still[b] & static_cast<uint8_t>(!p.begun)) {
-                for (uint32_t k = 0; k < p.count; ++k) world_.records[p.first_record + k].pair = i;
+                for (uint32_t k = 0; k < p.count; ++k) {
+                    world_.records[p.first_record + k].pair = i;
+                    tally(p.first_record + k);
+                }
                 continue;
             }
             p.begun = false;
@@ -104,14 +117,16 @@ private:
         if (motion.kept[i] > 0.0f) {
             keep(p, index, i);
         } else if (p.kind == PairKind::boxes) {
-            BoxBatch& boxes = scratch_.boxes;
-            int k = boxes.count++;
+            auto& boxes = scratch_.boxes;
+            int k = boxed_++;
             scratch_.boxed[k] = index;
             boxes.a[k] = motion.a[i], boxes.b[k] = motion.b[i];
             boxes.margin[k] = motion.margin[i];
             boxes.feature[k] = world_.pairs.poses[p.cache].feature;
+        } else if (p.capacity == 1) {
+            collide_single(p, index, motion.margin[i]);
         } else {
-            collide_one(p, index, motion.margin[i]);
+            collide_mesh(p, index, motion.margin[i]);
         }
     }
 
@@ -130,61 +145,99 @@ private:
     }
     void flush_kept() {
         world_.narrow_kernels.refresh(scratch_.kept);
+        for (int k = 0; k < scratch_.kept.count; ++k) tally(static_cast<uint32_t>(scratch_.kept.record[k]));
         scratch_.kept.count = 0;
     }
 
-    void collide_one(ColliderPair& p, uint32_t index, float margin) {
+    // For the statistics of the step; whole numbers and a maximum, so the order does not matter.
+    void tally(uint32_t record) {
+        const ContactRecord& r = world_.records[record];
+        for (const ContactPointRecord& p : r.points) {
+            scratch_.contact_points += p.separation <= 0.0f;
+            scratch_.max_penetration = maximum(scratch_.max_penetration, -p.separation);
+        }
+    }
+
+    // A pair of convex shapes, or one with a plane.
+    void collide_single(ColliderPair& p, uint32_t index, float margin) {
+        PairCache& cache = world_.pairs.caches[p.cache];
+        Manifold manifold;
+        int count = collide(collide_input(world_, p, margin), cache, settings(), &manifold, 1);
+        if (count > 0) write_single(p, index, manifold);
+        finish(p, count, margin, cache.clearance);
+    }
+
+    template <class SomeManifold>
+    void write_single(ColliderPair& p, uint32_t index, const SomeManifold& manifold) {
+        const ShapeFrame &a = world_.frames[collider_a(p)], &b = world_.frames[collider_b(p)];
+        ContactRecord& r = record(p, 0);
+        if (p.count > 0) {
+            const OldContact old(r);
+            fill_record(r, a, b, manifold);
+            warm_start(r, old, a, b, scale_);
+        } else {
+            fill_record(r, a, b, manifold);
+            clear_impulses(r);
+        }
+        r.pair = index;
+    }
+
+    void collide_mesh(ColliderPair& p, uint32_t index, float margin) {
         PairCache& cache = world_.pairs.caches[p.cache];
         Manifold manifolds[max_mesh_manifolds];
         int count = collide(collide_input(world_, p, margin), cache, settings(), manifolds, p.capacity);
-        ContactRecord old[max_mesh_manifolds];
-        for (int i = 0; i < p.count; ++i) old[i] = world_.records[p.first_record + static_cast<uint32_t>(i)];
-        const ContactBase base = contact_base(world_, p, index);
+        const ShapeFrame &a = world_.frames[collider_a(p)], &b = world_.frames[collider_b(p)];
+        alignas(OldContact) std::byte room[max_mesh_manifolds * sizeof(OldContact)];
+        auto* old = reinterpret_cast<OldContact*>(room);
+        for (int i = 0; i < p.count; ++i) new (old + i) OldContact(world_.records[p.first_record + i]);
         for (int i = 0; i < count; ++i) {
-            ContactRecord& r = world_.records[p.first_record + static_cast<uint32_t>(i)];
-            fill_record(r, base, manifolds[i]);
-            for (int k = 0; k < p.count; ++k) {
-                if (old[k].key != r.key) continue;
-                warm_start(r, old[k], base.same_point, scale_);
-                break;
-            }
+            ContactRecord& r = record(p, i);
+            fill_record(r, a, b, manifolds[i]);
+            int k = 0;
+            while (k < p.count && old[k].key != r.key) ++k;
+            if (k < p.count) warm_start(r, old[k], a, b, scale_);
+            else clear_impulses(r);
+            r.pair = index;
         }
         finish(p, count, margin, cache.clearance);
     }
 
+    // The pair's record number `i`, with its lasting parts filled in.
+    ContactRecord& record(ColliderPair& p, int i) {
+        ContactRecord& r = world_.records[p.first_record + static_cast<uint32_t>(i)];
+        if (i < p.prepared) return r;
+        prepare_record(world_, p, r);
+        p.prepared = static_cast<uint8_t>(i + 1);
+        return r;
+    }
+
     void collide_boxes() {
-        BoxBatch& boxes = scratch_.boxes;
-        world_.narrow_kernels.collide_boxes(boxes);
-        for (int k = 0; k < boxes.count; ++k) {
+        auto& boxes = scratch_.boxes;
+        BoxBatch batch = boxes.batch(world_.frames.data(), boxed_);
+        world_.narrow_kernels.collide_boxes(batch);
+        for (int k = 0; k < boxed_; ++k) {
             uint32_t index = scratch_.boxed[k];
             ColliderPair& p = world_.pairs.now[index];
             KeptPose& pose = world_.pairs.poses[p.cache];
             if (boxes.clearance[k] > boxes.margin[k]) {
                 finish(p, 0, boxes.margin[k], boxes.clearance[k]);
-                continue;
-            }
-            if (boxes.out[k].count == 0) {
+            } else if (boxes.out[k].count == 0) {
                 // The faces or edges that face each other do not overlap: the boxes are apart, corner to edge or corner
                 // to corner, and the separating axis is not the direction of the shortest distance.
                 pose.feature = 0.0f;
-                collide_one(p, index, boxes.margin[k]);
-                continue;
+                collide_single(p, index, boxes.margin[k]);
+            } else {
+                pose.feature = boxes.feature[k];
+                write_single(p, index, boxes.out[k]);
+                finish(p, 1, boxes.margin[k], 0.0f);
             }
-            pose.feature = boxes.feature[k];
-            ContactRecord& r = world_.records[p.first_record];
-            ContactRecord old;
-            bool known = p.count > 0;
-            if (known) old = r;
-            const ContactBase base = contact_base(world_, p, index);
-            fill_record(r, base, boxes.out[k]);
-            if (known) warm_start(r, old, base.same_point, scale_);
-            finish(p, 1, boxes.margin[k], 0.0f);
         }
     }
 
     // `clearance`: least distance of the surfaces, where there are no manifolds.
     void finish(ColliderPair& p, int count, float margin, float clearance) {
         p.count = static_cast<uint8_t>(count);
+        for (int i = 0; i < count; ++i) tally(p.first_record + static_cast<uint32_t>(i));
         KeptPose& pose = world_.pairs.poses[p.cache];
         pose.clearance = unkept;
         if (p.kind == PairKind::round) return;
@@ -206,6 +259,7 @@ private:
 
     WorldData& world_;
     NarrowScratch& scratch_;
+    int boxed_ = 0;  // pairs in the lists of boxes
     float scale_;
 };
 
@@ -246,6 +300,7 @@ void find_contacts(WorldData& world, float dt) {
     world.records.resize_unset(world.pairs.record_count);
     world.found_separations.resize_unset(world.pairs.record_count);
     world.narrow_scratch.resize_unset(static_cast<size_t>(world.tasks.workers()));
+    for (NarrowScratch& s : world.narrow_scratch) s.contact_points = 0, s.max_penetration = 0.0f;
     int count = world.pairs.now.count();
     int grain = count / (8 * world.tasks.workers());
     grain = grain < fewest_per_task ? fewest_per_task : grain > batch_capacity ? batch_capacity : grain;
@@ -255,6 +310,12 @@ void find_contacts(WorldData& world, float dt) {
             chunk.run(i, end - i < batch_capacity ? end : i + batch_capacity);
     });
     list_contacts(world);
+    world.statistics.contact_points = 0;
+    world.statistics.max_penetration = 0.0f;
+    for (const NarrowScratch& s : world.narrow_scratch) {
+        world.statistics.contact_points += s.contact_points;
+        world.statistics.max_penetration = maximum(world.statistics.max_penetration, s.max_penetration);
+    }
 }
 
 }  // namespace lendulet

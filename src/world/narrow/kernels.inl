@@ -1,6 +1,6 @@
 // The one source of the narrow phase's wide kernels. Included by one unit per instruction set, which defines
-// LENDULET_KERNEL_SPACE: the namespace that keeps the copies apart, so that the linker can never give a unit the code of
-// a wider machine.
+// LENDULET_KERNEL_SPACE: the namespace that keeps the copies apart, so that the linker can never give a unit the code
+// of a wider machine.
 #include <type_traits>
 
 #include "math/wide/gather.h"

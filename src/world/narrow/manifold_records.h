@@ -7,24 +7,25 @@
 
 namespace lendulet {
 
-// What all manifolds of a pair share.
-struct ContactBase {
-    ContactSurface surface;
-    Vec3 arm_a;    // of A's shape
-    Vec3 centres;  // from A's centre of mass to B's
-    float separation_speed;
-    float same_point;  // two points this close are the same from step to step, m
-    uint32_t flags, pair;
+// The parts of a record that stay while its pair lasts.
+void prepare_record(const WorldData& world, const ColliderPair& p, ContactRecord& r);
+
+// All others but impulses and the index of the pair. `a` and `b` are the shapes' frames.
+void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const Manifold& m);
+void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const BoxManifold& m);
+
+// What is left of a record while its manifold is replaced.
+struct OldContact {
+    explicit OldContact(const ContactRecord& r);
+    float normal_impulse[4], friction_impulse[3], twist_impulse;
+    ContactPointRecord points[4];
+    uint32_t id[4], key;
+    int32_t point_count;
 };
-ContactBase contact_base(const WorldData& world, const ColliderPair& p, uint32_t index);
-
-// Without impulses.
-void fill_record(ContactRecord& r, const ContactBase& base, const Manifold& m);
-void fill_record(ContactRecord& r, const ContactBase& base, const BoxManifold& m);
-
 // Impulses of the points that were there in the step before, times `scale`: the same are those with one name, or else
-// the nearest within `tolerance`.
-void warm_start(ContactRecord& r, const ContactRecord& old, float tolerance, float scale);
+// the nearest within a part of the smaller shape's radius.
+void warm_start(ContactRecord& r, const OldContact& old, const ShapeFrame& a, const ShapeFrame& b, float scale);
+void clear_impulses(ContactRecord& r);
 void scale_impulses(ContactRecord& r, float scale);
 
 }  // namespace lendulet

@@ -34,7 +34,8 @@ LENDULET_FORCE_INLINE WideMotion<Wide<float, W>> motion_since(const ShapeFrame* 
     auto turn = [](const F* q, const F* kept) {
         return multiply(QuatT<F>{q[0], q[1], q[2], q[3]}, QuatT<F>{-kept[0], -kept[1], -kept[2], kept[3]});
     };
-    return {turn(qa, kept_a), turn(qb, kept_b),
+    return {turn(qa, kept_a),
+            turn(qb, kept_b),
             {(xb[0] - xa[0]) - offset[0], (xb[1] - xa[1]) - offset[1], (xb[2] - xa[2]) - offset[2]}};
 }
 
@@ -62,8 +63,8 @@ void test_motion(MotionBatch& batch) {
         gather4<W>(floats_of(batch.frames), b, frame_stride, frame_arm, arm_b);
         gather4<W>(floats_of(batch.poses), pose, sizeof(KeptPose) / sizeof(float), 12, state);
         Vec3T<F> speed{vb[0] - va[0], vb[1] - va[1], vb[2] - va[2]};
-        F margin = near + (splat<F>(batch.dt) * square_root(dot(speed, speed)) + splat<F>(batch.fall)) +
-                   (va[3] + vb[3]);
+        F margin =
+            near + (splat<F>(batch.dt) * square_root(dot(speed, speed)) + splat<F>(batch.fall)) + (va[3] + vb[3]);
         F moved = square_root(dot(m.shift, m.shift)) +
                   two * (vector_length(m.turn_a) * arm_a[3] + vector_length(m.turn_b) * arm_b[3]);
         F room = minimum(tolerance, state[0] - margin);
