@@ -44,7 +44,7 @@ struct NearestQuery {
 };
 
 // The answer to a ray, cast or nearest query: `at` is t or the distance, unset if the index is no_box.
-struct QueryHit {
+struct BroadPhaseHit {
     uint32_t index;
     float at;
 };

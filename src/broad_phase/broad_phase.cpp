@@ -91,7 +91,7 @@ void BroadPhase::query_boxes(TaskPool& tasks, const BoxQuery* queries, int count
     offsets[count] = static_cast<uint32_t>(out.size());
 }
 
-void BroadPhase::rays(TaskPool& tasks, const RayQuery* queries, int count, QueryHit* hits) const {
+void BroadPhase::rays(TaskPool& tasks, const RayQuery* queries, int count, BroadPhaseHit* hits) const {
     tasks.for_each(count, queries_per_task, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i) {
             const RayQuery& q = queries[i];
@@ -100,7 +100,7 @@ void BroadPhase::rays(TaskPool& tasks, const RayQuery* queries, int count, Query
     });
 }
 
-void BroadPhase::cast_boxes(TaskPool& tasks, const CastQuery* queries, int count, QueryHit* hits) const {
+void BroadPhase::cast_boxes(TaskPool& tasks, const CastQuery* queries, int count, BroadPhaseHit* hits) const {
     tasks.for_each(count, queries_per_task, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i) {
             const CastQuery& q = queries[i];
@@ -109,7 +109,7 @@ void BroadPhase::cast_boxes(TaskPool& tasks, const CastQuery* queries, int count
     });
 }
 
-void BroadPhase::nearest_boxes(TaskPool& tasks, const NearestQuery* queries, int count, QueryHit* hits) const {
+void BroadPhase::nearest_boxes(TaskPool& tasks, const NearestQuery* queries, int count, BroadPhaseHit* hits) const {
     tasks.for_each(count, queries_per_task, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i) {
             hits[i].index = nearest(queries[i].point, queries[i].max_distance, hits[i].at);

@@ -63,9 +63,9 @@ public:
     // is replaced and gets count + 1 entries.
     void query_boxes(TaskPool& tasks, const BoxQuery* queries, int count, Array<uint32_t>& offsets,
                      Array<uint32_t>& out);
-    void rays(TaskPool& tasks, const RayQuery* queries, int count, QueryHit* hits) const;
-    void cast_boxes(TaskPool& tasks, const CastQuery* queries, int count, QueryHit* hits) const;
-    void nearest_boxes(TaskPool& tasks, const NearestQuery* queries, int count, QueryHit* hits) const;
+    void rays(TaskPool& tasks, const RayQuery* queries, int count, BroadPhaseHit* hits) const;
+    void cast_boxes(TaskPool& tasks, const CastQuery* queries, int count, BroadPhaseHit* hits) const;
+    void nearest_boxes(TaskPool& tasks, const NearestQuery* queries, int count, BroadPhaseHit* hits) const;
 
     // Appends the boxes of the structure itself with their depth, for pictures and debugging: those given (leaves), and
     // those of nodes where there are any.

@@ -24,12 +24,6 @@ float half_area(const float lower[3], const float upper[3]) {
     return x * y + y * z + z * x;
 }
 
-bool bounded(const BroadBox& b) {
-    bool yes = true;
-    for (int d = 0; d < 3; ++d) yes &= absolute(b.lower[d]) <= FLT_MAX && absolute(b.upper[d]) <= FLT_MAX;
-    return yes;
-}
-
 }  // namespace
 
 float QueryTree::Part::area() const { return half_area(lower, upper); }

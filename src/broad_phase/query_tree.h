@@ -5,6 +5,8 @@
 // sees the present; and it is built for few long searches instead of many short ones.
 #pragma once
 
+#include <cfloat>
+
 #include "base/memory.h"
 #include "broad_phase/block.h"
 #include "broad_phase/box.h"

@@ -9,7 +9,6 @@ namespace {
 bool is_ball(const Geometry& g) { return g.kind == GeometryKind::point; }
 bool is_capsule(const Geometry& g) { return g.kind == GeometryKind::segment; }
 bool is_box(const Geometry& g) { return g.kind == GeometryKind::box; }
-bool is_sharp_box(const Geometry& g) { return is_box(g) && g.rounding == 0.0f; }
 
 // Pairs that are written for the other order: the functions take the flatter shape first.
 bool wants_swap(const CollidePair& p) {
@@ -34,7 +33,19 @@ int collide_in_order(const CollidePair& p, PairCache& cache, const CollideSettin
 
 }  // namespace
 
+bool is_sharp_box(const Geometry& g) { return is_box(g) && g.rounding == 0.0f; }
+
+bool has_closed_form(const Geometry& a, const Geometry& b) {
+    auto round = [](const Geometry& g) { return is_ball(g) || is_capsule(g); };
+    auto with = [&](const Geometry& one, const Geometry& other) {
+        return is_ball(one) ? round(other) || is_box(other) || other.kind == GeometryKind::plane
+                            : is_capsule(one) && (is_capsule(other) || other.kind == GeometryKind::plane);
+    };
+    return with(a, b) || with(b, a);
+}
+
 int collide(const CollidePair& pair, PairCache& cache, const CollideSettings& settings, Manifold* out, int capacity) {
+    cache.clearance = pair.margin;
     if (capacity <= 0 || (!is_convex(*pair.a) && !is_convex(*pair.b))) return 0;
     if (!wants_swap(pair)) return collide_in_order(pair, cache, settings, out, capacity);
     int count = collide_in_order(swapped(pair), cache, settings, out, capacity);

@@ -26,6 +26,8 @@ struct CollideSettings {
 // start of the next distance query. Results depend on poses and cache alone.
 struct PairCache {
     uint32_t feature = 0;
+    // Out, where no manifolds were found: the surfaces are at least this far apart, m.
+    float clearance = 0.0f;
     GjkCache gjk;
 };
 
@@ -34,6 +36,10 @@ struct PairCache {
 // Pairs of two meshes or planes give none. Order of a and b is the caller's: normals point from a to b.
 inline constexpr int max_mesh_manifolds = 16;
 int collide(const CollidePair& pair, PairCache& cache, const CollideSettings& settings, Manifold* out, int capacity);
+
+bool is_sharp_box(const Geometry& g);
+// Whether the pair is collided by a closed form: balls and capsules with each other, with boxes and planes.
+bool has_closed_form(const Geometry& a, const Geometry& b);
 
 // Whether the two shapes overlap or touch; for triggers.
 bool overlap(const CollidePair& pair, PairCache& cache, const CollideSettings& settings);

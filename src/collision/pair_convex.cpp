@@ -110,8 +110,11 @@ int collide_convex_convex(const CollidePair& pair, PairCache& cache, const Colli
     c.pair = &pair;
     c.b_in_a = {rotate_inverse(pair.rotation_a, pair.offset), conjugate(pair.rotation_a) * pair.rotation_b};
     c.sweep = pair.a->rounding + pair.b->rounding;
-    c.nearest = distance({pair.a, pair.b, c.b_in_a}, cache.gjk, settings.simplex, pair.margin + c.sweep);
-    if (!(c.nearest.distance - c.sweep <= pair.margin)) return 0;
+    c.nearest = distance({pair.a, pair.b, c.b_in_a}, cache.gjk, settings.simplex, 2.0f * pair.margin + c.sweep);
+    if (!(c.nearest.distance - c.sweep <= pair.margin)) {
+        cache.clearance = c.nearest.distance - c.sweep;
+        return 0;
+    }
     Vec3 normal = c.nearest.normal;
     c.a = best_face(*pair.a, normal);
     c.b = best_face(*pair.b, rotate_inverse(c.b_in_a.rotation, -normal));

@@ -202,6 +202,17 @@ ConvexDistance distance_to(const MeshQuery& q, const Triangle& t, float limit) {
     return distance({&flat_core, &q.shape, {{}, q.turn}}, cold, q.settings.simplex, limit);
 }
 
+// Whether the core lies beyond one of the triangle's sides by more than `limit`, so that it is farther away than that.
+// Most triangles near a shape are told by this, at a tenth of a distance query.
+bool beyond_side(const MeshQuery& q, const Triangle& t, float limit) {
+    for (int i = 0; i < 3; ++i) {
+        Vec3 out = normalize(out_across(t, i));
+        Vec3 inward = rotate_inverse(q.turn, -out);
+        if (-dot(inward, support_core(q.shape, inward)) - dot(out, t.vertices[i]) > limit) return true;
+    }
+    return false;
+}
+
 // Behind a closed surface's side, whose neighbour across one of these edges the shape's centre is in front of: the
 // neighbour pushes out, and pushing deeper in would be wrong.
 bool neighbour_pushes(const MeshQuery& q, const Triangle& t, uint8_t edges) {
@@ -273,6 +284,7 @@ void convex_triangle(MeshQuery& q, const Triangle& t, TriangleContact& out) {
     // be across an edge.
     bool sure = t.touching == 0 && (height >= 0.0f || !t.from_behind || t.bent == 0);
     if (sure || is_shortest(q, t, clipped)) return face_contact(q, t, clipped, out);
+    if (beyond_side(q, t, limit)) return;
     ConvexDistance nearest = distance_to(q, t, limit);
     if (nearest.distance > limit) return;
     float lean = dot(nearest.normal, t.normal);

@@ -26,10 +26,36 @@ void bound_collider(WorldData& world, uint32_t slot, Vec3 sweep, float grow, Bro
     world.colliders.info[slot].boxed = true;
 }
 
+// What the narrow phase reads; `turn`: by how much the body turns within the step, rad.
+void set_frame(WorldData& world, uint32_t slot, float turn) {
+    const ColliderInfo& info = world.colliders.info[slot];
+    const ColliderPlace& place = world.colliders.place[slot];
+    const Geometry& geometry = world.colliders.geometry[slot];
+    const BodyInfo& body = world.bodies.info[info.body];
+    const Position x = world.bodies.pose[info.body].position;
+    ShapeFrame& f = world.frames[slot];
+    const float rotation[4] = {place.rotation.x, place.rotation.y, place.rotation.z, place.rotation.w};
+    bool moved = f.centre[0] != x.x || f.centre[1] != x.y || f.centre[2] != x.z;
+    for (int k = 0; k < 4; ++k) moved |= f.rotation[k] != rotation[k], f.rotation[k] = rotation[k];
+    world.still[slot] = body.type == BodyType::fixed || (body.asleep && !moved) ? 1 : 0;
+    Vec3 v = world.bodies.velocity(info.body);
+    f.centre[0] = x.x, f.centre[1] = x.y, f.centre[2] = x.z;
+    f.velocity[0] = v.x, f.velocity[1] = v.y, f.velocity[2] = v.z;
+    f.arm[0] = place.arm.x, f.arm[1] = place.arm.y, f.arm[2] = place.arm.z;
+    f.near = minimum(contact_margin, 0.25f * info.radius);
+    // Of what never turns no point moves, however far out.
+    f.reach = body.type == BodyType::fixed ? 0.0f : minimum(length(place.arm) + info.radius, 1e30f);
+    f.turning = minimum(turn, 2.0f) * f.reach;
+    f.half[0] = geometry.size.x, f.half[1] = geometry.size.y, f.half[2] = geometry.size.z;
+    f.radius = info.radius;
+}
+
 void bound_moving(WorldData& world, uint32_t slot, float dt, BroadBox& box) {
     const ColliderInfo& info = world.colliders.info[slot];
     uint32_t body = info.body;
     world.colliders.update_place(slot, world.bodies.pose[body].orientation);
+    float turn = dt * length(world.bodies.angular_velocity(body));
+    set_frame(world, slot, turn);
     float grow = half_margin(info);
     Vec3 sweep;
     if (!world.bodies.info[body].asleep) {
@@ -39,7 +65,6 @@ void bound_moving(WorldData& world, uint32_t slot, float dt, BroadBox& box) {
                              2.0f * max_speed);
         // A turning shape reaches no farther than its radius about the body's centre, nor than the arc it runs through.
         float reach = length(world.colliders.place[slot].arm) + info.radius;
-        float turn = dt * length(world.bodies.angular_velocity(body));
         grow += fall + (turn > 0.05f ? minimum(turn, 2.0f) * reach : 0.0f);
     }
     bound_collider(world, slot, sweep, grow, box);
@@ -49,12 +74,15 @@ void bound_moving(WorldData& world, uint32_t slot, float dt, BroadBox& box) {
 
 void update_bounds(WorldData& world, float dt) {
     ColliderStore& colliders = world.colliders;
+    world.frames.resize(static_cast<size_t>(colliders.slots.capacity()));
+    world.still.resize(world.frames.size());
     if (world.fixed_changed) {
         world.fixed_boxes.clear();
         for (uint32_t slot : colliders.slots.order()) {
             uint32_t body = colliders.info[slot].body;
             if (world.bodies.info[body].type != BodyType::fixed) continue;
             colliders.update_place(slot, world.bodies.pose[body].orientation);
+            set_frame(world, slot, 0.0f);
             bound_collider(world, slot, {}, half_margin(colliders.info[slot]), world.fixed_boxes.push_back({}));
         }
         world.broad_phase.set_fixed(world.fixed_boxes.data(), world.fixed_boxes.count());

@@ -40,33 +40,63 @@ void PairTable::sort(Array<BoxPair>& boxes) {
     }
 }
 
+uint32_t PairTable::take_cache() {
+    if (free_caches.empty()) {
+        free_caches.push_back(static_cast<uint32_t>(caches.size()));
+        caches.push_back(PairCache{});
+        poses.push_back(KeptPose{});
+        free_caches.reserve(caches.capacity());  // room for all, so that giving back takes no memory
+    }
+    uint32_t cache = free_caches.back();
+    free_caches.pop_back();
+    caches[cache] = PairCache{};
+    poses[cache] = KeptPose{};
+    poses[cache].clearance = unkept;
+    return cache;
+}
+
 void PairTable::update(Array<BoxPair>& boxes) {
     sort(boxes);
     now.swap(before);
     now.resize_unset(boxes.size());
-    // Two passes over the sorted lists: ended pairs first, so that new pairs can take over their caches.
+    // Two passes over the sorted lists: ended pairs first, so that new pairs can take over their places.
     size_t j = 0;
     for (ColliderPair& old : before) {
         while (j < boxes.size() && (uint64_t{boxes[j].a} << 32 | boxes[j].b) < key(old)) ++j;
-        bool goes_on = j < boxes.size() && boxes[j].a == old.a && boxes[j].b == old.b;
-        if (!goes_on && old.cache != no_cache) free_caches.push_back(old.cache), old.cache = no_cache;
+        bool goes_on = j < boxes.size() && boxes[j].a == old.a && boxes[j].b == old.b && old.cache != no_cache;
+        if (goes_on) continue;
+        if (old.cache != no_cache) free_caches.push_back(old.cache), old.cache = no_cache;
+        if (old.capacity == 1) free_single_.push_back(old.first_record);
+        if (old.capacity > 1) free_mesh_.push_back(old.first_record);
     }
     j = 0;
+    begun.clear();
+    begun.reserve(now.capacity());
     for (size_t i = 0; i < boxes.size(); ++i) {
-        ColliderPair p{boxes[i].a, boxes[i].b, 0, 0, 0, 0};
+        ColliderPair p{};
+        p.a = boxes[i].a, p.b = boxes[i].b;
+        p.begun = true;
         while (j < before.size() && key(before[j]) < key(p)) ++j;
         if (j < before.size() && key(before[j]) == key(p) && before[j].cache != no_cache) {
-            p = before[j];  // `first_record` and `count` still name the old records: read by the narrow phase
+            p = before[j];
         } else {
-            if (free_caches.empty()) {
-                free_caches.push_back(static_cast<uint32_t>(caches.size()));
-                caches.push_back(PairCache{});
-            }
-            p.cache = free_caches.back();
-            free_caches.pop_back();
-            caches[p.cache] = PairCache{};
+            p.cache = take_cache();
+            begun.push_back(static_cast<uint32_t>(i));
         }
         now[i] = p;
+    }
+}
+
+void PairTable::place_records(ColliderPair& pair, bool mesh) {
+    pair.capacity = mesh ? max_mesh_manifolds : 1;
+    Array<uint32_t>& free = mesh ? free_mesh_ : free_single_;
+    if (free.empty()) {
+        pair.first_record = record_count;
+        record_count += pair.capacity;
+        free.reserve(caches.capacity());
+    } else {
+        pair.first_record = free.back();
+        free.pop_back();
     }
 }
 

@@ -92,13 +92,6 @@ void finish_step(WorldData& world, float dt) {
     s.awake_bodies = world.awake.count();
     s.pairs = world.pairs.now.count();
     s.manifolds = world.touching.count();
-    s.contact_points = 0;
-    s.max_penetration = 0.0f;
-    for (uint32_t i : world.touching) {
-        const ContactRecord& r = world.records[i];
-        for (int j = 0; j < r.point_count; ++j) s.max_penetration = maximum(s.max_penetration, -r.points[j].separation);
-        for (int j = 0; j < r.point_count; ++j) s.contact_points += r.points[j].separation <= 0.0f;
-    }
     s.colours = s.overflow_manifolds = 0;
     size_t row_bytes = 0;
     for (const Solver& solver : world.solvers) {
@@ -109,8 +102,8 @@ void finish_step(WorldData& world, float dt) {
     s.joints = world.joints.count();
     s.bytes_per_body = BodyStore::bytes_per_body() + sizeof(BodyState) + sizeof(BodyInertia) + sizeof(BodyStart) +
                        sizeof(BodyMotion) + sizeof(BodyBlock) / block_bodies;
-    s.bytes_per_manifold = 2 * sizeof(ContactRecord) + sizeof(ColliderPair) + sizeof(PairCache) +
-                           (world.active.empty() ? 0 : row_bytes / world.active.size());
+    s.bytes_per_manifold = sizeof(ContactRecord) + sizeof(FoundSeparations) + sizeof(ColliderPair) + sizeof(PairCache) +
+                           sizeof(KeptPose) + (world.active.empty() ? 0 : row_bytes / world.active.size());
     world.last_h = dt / static_cast<float>(world.config.solver_steps);
     world.time += dt;
     ++world.steps;

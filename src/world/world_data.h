@@ -17,15 +17,21 @@
 #include "solver/joint.h"
 #include "solver/solver.h"
 #include "world/continuous.h"
+#include "world/narrow/kernels.h"
 #include "world/pairs.h"
 #include "world/queries/scene.h"
 
 namespace lendulet {
 
-// A stretch of records.
-struct OldPlace {
-    uint32_t first;
-    uint32_t count;
+// Lists of one chunk of pairs on its way through the narrow phase, one a worker.
+struct NarrowScratch {
+    MotionBatch motion;
+    RefreshBatch kept;
+    BoxLists<batch_capacity, 16> boxes;
+    uint32_t tested[MotionBatch::room];  // pairs of `motion`
+    uint32_t boxed[batch_capacity];      // pairs of `boxes`
+    int contact_points;                  // those that touch or overlap, and the deepest overlap, m
+    float max_penetration;
 };
 
 // Islands take 1, 2, 4 or 8 times the substeps of the setting.
@@ -70,14 +76,19 @@ struct WorldData {
     ContinuousData continuous;
     QueryScene query_scene;  // what queries search, brought up to date by the first of them after a change
 
-    // Manifolds of this step and the one before; each pair has its own stretch.
-    Array<ContactRecord> records, old_records;
-    Array<OldPlace> old_places;
-    Array<uint32_t> touching;  // records with points, in order
-    Array<uint32_t> active;    // those of them that are solved, by class of substeps: at least one body awake
+    // What the narrow phase reads of colliders, by slot, and whether they are where they were in the step before.
+    Array<ShapeFrame> frames;
+    Array<uint8_t> still;
+    const NarrowKernels& narrow_kernels;
+    Array<NarrowScratch> narrow_scratch;  // one a worker
+
+    // Manifolds, kept in place from step to step: each pair has its own stretch.
+    Array<ContactRecord> records;
+    Array<FoundSeparations> found_separations;  // by record
+    Array<uint32_t> touching;                   // records with points, in order
+    Array<uint32_t> active;  // those of them that are solved, by class of substeps: at least one body awake
     Array<uint32_t> unsorted;
     Array<Overlap> overlaps;
-    Array<uint8_t> trigger_hits;    // by pair
     Array<uint32_t> active_joints;  // slots of the joints that are solved, in creation order
     Array<JointRecord> joint_records;
 

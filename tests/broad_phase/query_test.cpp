@@ -194,7 +194,7 @@ TEST_P(QueryTest, BatchesAnswerAsSingleQueriesDo) {
     Array<uint32_t> offsets, hits;
     hits.push_back(7);  // appended to
     broad_phase_.query_boxes(tasks, boxes.data(), n, offsets, hits);
-    std::vector<QueryHit> by_ray(n), by_cast(n), by_point(n);
+    std::vector<BroadPhaseHit> by_ray(n), by_cast(n), by_point(n);
     broad_phase_.rays(tasks, rays.data(), n, by_ray.data());
     broad_phase_.cast_boxes(tasks, casts.data(), n, by_cast.data());
     broad_phase_.nearest_boxes(tasks, points.data(), n, by_point.data());
@@ -208,7 +208,7 @@ TEST_P(QueryTest, BatchesAnswerAsSingleQueriesDo) {
         EXPECT_EQ(std::vector<uint32_t>(single.begin(), single.end()),
                   std::vector<uint32_t>(hits.begin() + offsets[i], hits.begin() + offsets[i + 1]));
         float t = 0;
-        auto same = [&](const QueryHit& hit, uint32_t index) {
+        auto same = [&](const BroadPhaseHit& hit, uint32_t index) {
             ASSERT_EQ(hit.index, index);
             if (index == no_box) return;
             ASSERT_EQ(hit.at, t);

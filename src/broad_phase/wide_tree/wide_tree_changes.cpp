@@ -15,7 +15,8 @@ constexpr float all_space = FLT_MAX;
 // jumps. Groups can then at most double their edges.
 constexpr float leeway = 0.5f;
 
-bool bounded(const BroadBox& box) {
+// Its edges are finite numbers.
+bool measurable(const BroadBox& box) {
     bool yes = true;
     for (int d = 0; d < 3; ++d) yes &= box.upper[d] - box.lower[d] <= FLT_MAX;
     return yes;
@@ -272,7 +273,7 @@ void WideTreeSet::add_group() {
 }
 
 void WideTreeSet::insert(uint32_t place, const BroadBox& box) {
-    if (!bounded(box)) {
+    if (!measurable(box)) {
         lane_of_[place] = beside | static_cast<uint32_t>(unbounded_.count());
         unbounded_.push_back(box);
         unbounded_place_.push_back(place);

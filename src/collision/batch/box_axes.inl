@@ -1,0 +1,94 @@
+// Boxes in lanes and their separating axes (Gottschalk, Lin, Manocha 1996). Part of boxes.inl.
+
+// A face is preferred to an edge axis that separates better by less than this part of the smallest half extent, and the
+// axis of the last step to any other: contacts of faces are stable, and a change of axis changes every point.
+constexpr float axis_tolerance = 5e-3f;
+constexpr float lowest_score = -3e38f;
+
+template <class F>
+struct WideBox {
+    Vec3T<F> axis[3];  // in the world
+    Vec3T<F> centre, arm;
+    F half[3];
+};
+
+template <int W>
+LENDULET_FORCE_INLINE WideBox<Wide<float, W>> load_box(const ShapeFrame* frames, const int32_t* index) {
+    using F = Wide<float, W>;
+    const float* base = floats_of(frames);
+    F q[4], x[4], arm[4], half[4];
+    gather4<W>(base, index, frame_stride, frame_rotation, q);
+    gather4<W>(base, index, frame_stride, frame_centre, x);
+    gather4<W>(base, index, frame_stride, frame_arm, arm);
+    gather4<W>(base, index, frame_stride, frame_half, half);
+    Mat3T<F> m = rotation_matrix<F>(QuatT<F>{q[0], q[1], q[2], q[3]}, splat<F>(1.0f));
+    return {{m.x, m.y, m.z}, {x[0], x[1], x[2]}, {arm[0], arm[1], arm[2]}, {half[0], half[1], half[2]}};
+}
+// From the position of one shape to that of the other.
+template <class F>
+LENDULET_FORCE_INLINE Vec3T<F> offset_between(const WideBox<F>& a, const WideBox<F>& b) {
+    return (b.centre - a.centre) + (b.arm - a.arm);
+}
+
+template <class F>
+struct BestAxis {
+    F axis;       // 0..2 faces of A, 3..5 faces of B, 6 + 3 i + j edge i of A with edge j of B
+    F clearance;  // largest separation of all
+};
+
+// Separations along the 15 axes. Nearly parallel edges have none, the faces cover them.
+template <class F>
+LENDULET_FORCE_INLINE void separations(const WideBox<F>& a, const WideBox<F>& b, F* s) {
+    Vec3T<F> d = offset_between(a, b);
+    F r[3][3], ar[3][3], along_a[3];  // r[i][j] = (axis i of A) . (axis j of B)
+    for (int i = 0; i < 3; ++i) {
+        along_a[i] = dot(a.axis[i], d);
+        for (int j = 0; j < 3; ++j) r[i][j] = dot(a.axis[i], b.axis[j]), ar[i][j] = absolute(r[i][j]);
+    }
+    for (int i = 0; i < 3; ++i) {
+        F reach = a.half[i] + (b.half[0] * ar[i][0] + b.half[1] * ar[i][1] + b.half[2] * ar[i][2]);
+        s[i] = absolute(along_a[i]) - reach;
+    }
+    for (int j = 0; j < 3; ++j) {
+        F reach = b.half[j] + (a.half[0] * ar[0][j] + a.half[1] * ar[1][j] + a.half[2] * ar[2][j]);
+        s[3 + j] = absolute(dot(b.axis[j], d)) - reach;
+    }
+    for (int i = 0; i < 3; ++i) {
+        const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+        for (int j = 0; j < 3; ++j) {
+            const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+            F distance = absolute(along_a[i2] * r[i1][j] - along_a[i1] * r[i2][j]);
+            F reach =
+                (a.half[i1] * ar[i2][j] + a.half[i2] * ar[i1][j]) + (b.half[j1] * ar[i][j2] + b.half[j2] * ar[i][j1]);
+            F sine_squared = r[i1][j] * r[i1][j] + r[i2][j] * r[i2][j];
+            F separation = (distance - reach) / square_root(maximum(sine_squared, splat<F>(1e-12f)));
+            s[6 + 3 * i + j] = select(sine_squared > splat<F>(1e-5f), separation, splat<F>(lowest_score));
+        }
+    }
+}
+
+template <class F>
+LENDULET_FORCE_INLINE BestAxis<F> best_axis(const WideBox<F>& a, const WideBox<F>& b, F feature) {
+    F s[15];
+    separations(a, b, s);
+    auto number = [](int k) { return splat<F>(static_cast<float>(k)); };
+    F face = number(0), face_separation = s[0], edge = number(6), edge_separation = s[6];
+    for (int k = 1; k < 6; ++k) {
+        auto better = s[k] > face_separation;
+        face = select(better, number(k), face);
+        face_separation = select(better, s[k], face_separation);
+    }
+    for (int k = 7; k < 15; ++k) {
+        auto better = s[k] > edge_separation;
+        edge = select(better, number(k), edge);
+        edge_separation = select(better, s[k], edge_separation);
+    }
+    F tolerance = splat<F>(axis_tolerance) * minimum(minimum(minimum(a.half[0], a.half[1]), a.half[2]),
+                                                     minimum(minimum(b.half[0], b.half[1]), b.half[2]));
+    auto by_edge = edge_separation > face_separation + tolerance;
+    F axis = select(by_edge, edge, face), separation = select(by_edge, edge_separation, face_separation);
+    F remembered = splat<F>(lowest_score);
+    for (int k = 0; k < 15; ++k) remembered = select(feature == number(k + 1), s[k], remembered);
+    axis = select(remembered > separation - tolerance, feature - number(1), axis);
+    return {axis, maximum(face_separation, edge_separation)};
+}

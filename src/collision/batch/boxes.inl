@@ -1,0 +1,173 @@
+// Two sharp boxes, W pairs side by side: all separating axes without early exit, then the incident face clipped by the
+// reference face, or the point between two edges. Included by units that define LENDULET_KERNEL_SPACE, or by one that
+// needs a single lane, inside a namespace of their own.
+
+#include "collision/batch/box_axes.inl"
+
+#include "collision/batch/box_faces.inl"
+
+// Lanes of one block of manifolds on their way to memory.
+template <class F>
+struct WideManifold {
+    Vec3T<F> normal;
+    F follow, count;
+    Vec3T<F> position[4];
+    F separation[4], name[4];
+};
+template <int W>
+LENDULET_FORCE_INLINE void store_manifolds(BoxManifold* out, const int32_t* index, const float* exchanged,
+                                           const WideManifold<Wide<float, W>>& m) {
+    using F = Wide<float, W>;
+    constexpr int stride = sizeof(BoxManifold) / sizeof(float);
+    float* base = floats_of(out);
+    const F head[4] = {m.normal.x, m.normal.y, m.normal.z, m.follow};
+    scatter4<W>(base, index, stride, 0, head);
+    for (int i = 0; i < 4; ++i) {
+        const F point[4] = {m.position[i].x, m.position[i].y, m.position[i].z, m.separation[i]};
+        scatter4<W>(base, index, stride, 4 + 4 * i, point);
+    }
+    for (int l = 0; l < W; ++l) {
+        BoxManifold& to = out[index[l]];
+        for (int i = 0; i < 4; ++i) {
+            uint32_t name = static_cast<uint32_t>(static_cast<int32_t>(lane(m.name[i], l)));
+            to.id[i] = exchanged[l] > 0.0f ? name << 16 | name >> 16 : name;  // A's feature in the upper half
+        }
+        to.count = static_cast<int32_t>(lane(m.count, l));
+    }
+}
+
+// One block of a list: the pairs, and their boxes with the reference box first.
+template <int W>
+struct ListBlock {
+    int32_t pair[W], first[W], second[W];
+    alignas(64) float margin[W], axis[W], exchanged[W];
+    LENDULET_FORCE_INLINE ListBlock(const BoxBatch& batch, const int32_t* list, int begin, int count) {
+        for (int l = 0; l < W; ++l) {
+            int32_t k = list[begin + l < count ? begin + l : count - 1];
+            float number = batch.feature[k] - 1.0f;
+            bool of_b = number >= 3.0f && number < 6.0f;
+            pair[l] = k;
+            first[l] = of_b ? batch.b[k] : batch.a[k];
+            second[l] = of_b ? batch.a[k] : batch.b[k];
+            margin[l] = batch.margin[k];
+            axis[l] = of_b ? number - 3.0f : number;
+            exchanged[l] = of_b ? 1.0f : 0.0f;
+        }
+    }
+};
+
+template <int W>
+void face_manifolds(BoxBatch& batch, const int32_t* list, int count) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f), half = splat<F>(0.5f), one = splat<F>(1.0f);
+    for (int k = 0; k < count; k += W) {
+        const ListBlock<W> block(batch, list, k, count);
+        WideBox<F> reference = load_box<W>(batch.frames, block.first),
+                   incident = load_box<W>(batch.frames, block.second);
+        F margin = load_wide<F>(block.margin), exchanged = load_wide<F>(block.exchanged);
+        WideFaces<F> f = faces_of(reference, incident, load_wide<F>(block.axis));
+        F slack_u = splat<F>(overhang) * minimum(f.half_u, absolute(f.edge_1.x) + absolute(f.edge_2.x));
+        F slack_v = splat<F>(overhang) * minimum(f.half_v, absolute(f.edge_1.y) + absolute(f.edge_2.y));
+        const BoxNames<F> reference_names(f.axis, f.sign), incident_names(f.incident_axis, f.incident_sign);
+        Candidates<F> c;
+        clip_edges(f, slack_u, slack_v, margin, reference_names, incident_names, c);
+        project_corners(f, half * minimum(slack_u, slack_v), margin, reference_names, incident_names, c);
+        ChosenPoint<F> chosen[4];
+        WideManifold<F> m;
+        m.count = choose_points(c, chosen);
+        auto of_b = exchanged > half;
+        m.normal = select(of_b, -f.w, f.w);
+        m.follow = one - exchanged;
+        // From the centre of mass of A's body: the reference shape's own arm, or by way of the incident one.
+        Vec3T<F> origin = select(of_b, offset_between(incident, reference) + incident.arm, reference.arm);
+        for (int i = 0; i < 4; ++i) {
+            const ChosenPoint<F>& q = chosen[i];
+            auto there = m.count > splat<F>(static_cast<float>(i));
+            Vec3T<F> p = origin + (q.u * f.u + q.v * f.v + (f.half_w + half * q.separation) * f.w);
+            m.position[i] = select(there, p, zero_vector<F>());
+            m.separation[i] = select(there, q.separation, splat<F>(absent_separation));
+            m.name[i] = select(there, q.name, zero);
+        }
+        store_manifolds<W>(batch.out, block.pair, block.exchanged, m);
+    }
+}
+
+// --- edges
+
+// The nearest points of the two edges whose cross product is the axis; none where they lie beyond the edges' ends,
+// which happens only to boxes apart.
+template <int W>
+void edge_manifolds(BoxBatch& batch, const int32_t* list, int count) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f), half = splat<F>(0.5f);
+    auto sign_of = [&](F s) { return select(s > zero, one, zero - one); };
+    for (int k = 0; k < count; k += W) {
+        const ListBlock<W> block(batch, list, k, count);
+        WideBox<F> a = load_box<W>(batch.frames, block.first), b = load_box<W>(batch.frames, block.second);
+        F number = load_wide<F>(block.axis) - splat<F>(6.0f), margin = load_wide<F>(block.margin);
+        F i = select(number >= splat<F>(6.0f), splat<F>(2.0f), select(number >= splat<F>(3.0f), one, zero));
+        F j = number - splat<F>(3.0f) * i;
+        Chooser<F> ci(i), cj(j);
+        Vec3T<F> d = offset_between(a, b), ea = ci.at(a.axis), eb = cj.at(b.axis);
+        Vec3T<F> n = cross(ea, eb);
+        n = (one / length(n)) * n;
+        n = select(dot(n, d) < zero, -n, n);
+        Vec3T<F> a1 = ci.next(a.axis), a2 = ci.last(a.axis), b1 = cj.next(b.axis), b2 = cj.last(b.axis);
+        F sa1 = sign_of(dot(n, a1)), sa2 = sign_of(dot(n, a2));
+        F sb1 = zero - sign_of(dot(n, b1)), sb2 = zero - sign_of(dot(n, b2));
+        Vec3T<F> on_a = (sa1 * ci.next(a.half)) * a1 + (sa2 * ci.last(a.half)) * a2;
+        Vec3T<F> on_b = d + ((sb1 * cj.next(b.half)) * b1 + (sb2 * cj.last(b.half)) * b2);
+        Vec3T<F> gap = on_b - on_a;
+        F cosine = dot(ea, eb), along_a = dot(ea, gap), along_b = dot(eb, gap);
+        F inverse = one / maximum(one - cosine * cosine, splat<F>(1e-6f));
+        F s = (along_a - cosine * along_b) * inverse, t = (cosine * along_a - along_b) * inverse;
+        const F beyond = splat<F>(1.0f + 1e-3f);
+        on_a = on_a + s * ea;
+        on_b = on_b + t * eb;
+        F separation = dot(on_b - on_a, n);
+        auto there =
+            (absolute(s) <= beyond * ci.at(a.half)) & (absolute(t) <= beyond * cj.at(b.half)) & (separation <= margin);
+        WideManifold<F> m;
+        m.normal = n;
+        m.follow = half;
+        m.count = select(there, one, zero);
+        m.position[0] = a.arm + half * (on_a + on_b);
+        m.separation[0] = separation;
+        m.name[0] = name_of_point(BoxNames<F>::edge(i, sign_bit(sa1), sign_bit(sa2)),
+                                  BoxNames<F>::edge(j, sign_bit(sb1), sign_bit(sb2)));
+        for (int q = 1; q < 4; ++q) {
+            m.position[q] = zero_vector<F>();
+            m.separation[q] = splat<F>(absent_separation);
+            m.name[q] = zero;
+        }
+        store_manifolds<W>(batch.out, block.pair, block.exchanged, m);
+    }
+}
+
+// Manifolds of a whole batch.
+template <int W>
+void collide_boxes(BoxBatch& batch) {
+    using F = Wide<float, W>;
+    int lists[2] = {0, 0};
+    for (int k = 0; k < batch.count; k += W) {
+        int live = batch.count - k < W ? batch.count - k : W;
+        for (int l = live; l < W; ++l) {
+            batch.a[k + l] = batch.a[k], batch.b[k + l] = batch.b[k];
+            batch.feature[k + l] = batch.margin[k + l] = 0.0f;
+        }
+        WideBox<F> a = load_box<W>(batch.frames, batch.a + k), b = load_box<W>(batch.frames, batch.b + k);
+        BestAxis<F> best = best_axis(a, b, load_wide<F>(batch.feature + k));
+        F margin = load_wide<F>(batch.margin + k);
+        uint32_t near = mask_bits(best.clearance <= margin) & ((1u << live) - 1u);
+        uint32_t by_edge = mask_bits(best.axis >= splat<F>(6.0f));
+        store_wide(batch.feature + k, best.axis + splat<F>(1.0f));
+        store_wide(batch.clearance + k, best.clearance);
+        for (; near != 0; near &= near - 1) {
+            int l = __builtin_ctz(near);
+            uint32_t which = by_edge >> l & 1;
+            batch.list[which][lists[which]++] = k + l;
+        }
+    }
+    face_manifolds<W>(batch, batch.list[0], lists[0]);
+    edge_manifolds<W>(batch, batch.list[1], lists[1]);
+}

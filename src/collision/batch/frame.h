@@ -1,0 +1,29 @@
+// What batches of pairs read of a collider, in quads so that lanes are filled by transposes. The first cache line tells
+// how it moves, the second what it is.
+#pragma once
+
+#include <cstdint>
+
+namespace lendulet {
+
+struct alignas(64) ShapeFrame {
+    float rotation[4];  // shape to world
+    float centre[3];    // the body's centre of mass, world
+    float near;         // surfaces this close are given points, m
+    float velocity[3];  // of the centre of mass
+    float turning;      // most that turning moves a point of the shape within the step, m
+    float arm[3];       // the shape's position from the centre of mass, world axes
+    float reach;        // farthest that a point of the shape is from the centre of mass, m
+    float half[3];      // half extents of boxes
+    float radius;       // of a sphere about the shape's position that holds it
+    uint32_t unused[12];
+};
+static_assert(sizeof(ShapeFrame) == 128);
+
+inline constexpr int frame_stride = sizeof(ShapeFrame) / sizeof(float);
+inline constexpr int frame_rotation = 0, frame_centre = 4, frame_velocity = 8, frame_arm = 12, frame_half = 16;
+
+// Pairs are processed in chunks of this many; index lists have room for whole blocks of the widest lanes.
+inline constexpr int batch_capacity = 256;
+
+}  // namespace lendulet

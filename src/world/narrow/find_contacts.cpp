@@ -1,0 +1,321 @@
+// Stages 2 and 3: which colliders may touch, and where they do.
+//
+// Each pair owns its records, its cache and its kept pose; nothing else is written for it, and its results depend on
+// the poses and on what it owns. So pairs may be taken in any order by any worker, and gathered into batches at will.
+#include <new>
+
+#include "world/narrow/manifold_records.h"
+#include "world/world_data.h"
+
+namespace lendulet {
+namespace {
+
+constexpr int fewest_per_task = 32;
+// A manifold is kept while no surface has moved by more than this part of the distance at which points are listed.
+constexpr float kept_share = 0.25f;
+
+bool moved_by_constraints(const BodyInfo& info) { return info.type == BodyType::dynamic; }
+
+bool wanted(const WorldData& world, const BoxPair& p) {
+    const ColliderInfo& a = world.colliders.info[p.a];
+    const ColliderInfo& b = world.colliders.info[p.b];
+    if (a.body == b.body || !filters_match(a.filter, b.filter)) return false;
+    if (a.is_trigger && b.is_trigger) return false;
+    const BodyInfo& ba = world.bodies.info[a.body];
+    const BodyInfo& bb = world.bodies.info[b.body];
+    if (!moved_by_constraints(ba) && !moved_by_constraints(bb) && !a.is_trigger && !b.is_trigger) return false;
+    return !world.joints.keeps_apart(a.body, b.body);
+}
+
+// What does not change while a pair lasts.
+void begin_pair(WorldData& world, ColliderPair& p) {
+    const ColliderStore& c = world.colliders;
+    const Geometry &a = c.geometry[p.a], &b = c.geometry[p.b];
+    p.flipped = !moved_by_constraints(world.bodies.info[c.info[p.b].body]);
+    p.fixed_a = p.flipped || !moved_by_constraints(world.bodies.info[c.info[p.a].body]);
+    if (c.info[p.a].is_trigger || c.info[p.b].is_trigger) {
+        p.kind = PairKind::trigger;
+        return;
+    }
+    world.pairs.place_records(p, a.kind == GeometryKind::mesh || b.kind == GeometryKind::mesh);
+    p.kind = is_sharp_box(a) && is_sharp_box(b) ? PairKind::boxes
+             : has_closed_form(a, b)            ? PairKind::round
+                                                : PairKind::general;
+}
+
+uint32_t collider_a(const ColliderPair& p) { return p.flipped ? p.b : p.a; }
+uint32_t collider_b(const ColliderPair& p) { return p.flipped ? p.a : p.b; }
+
+// Collided by the frames, of which one line tells all.
+CollidePair collide_input(const WorldData& world, const ColliderPair& p, float margin) {
+    uint32_t a = collider_a(p), b = collider_b(p);
+    const ShapeFrame &fa = world.frames[a], &fb = world.frames[b];
+    auto quat = [](const float* q) { return Quat{q[0], q[1], q[2], q[3]}; };
+    auto vector = [](const float* v) { return Vec3{v[0], v[1], v[2]}; };
+    Vec3 offset = (vector(fb.centre) - vector(fa.centre)) + (vector(fb.arm) - vector(fa.arm));
+    return {&world.colliders.geometry[a],
+            &world.colliders.geometry[b],
+            quat(fa.rotation),
+            quat(fb.rotation),
+            offset,
+            margin};
+}
+
+// One chunk of pairs, from the test whether they have moved to their records.
+class Chunk {
+public:
+    Chunk(WorldData& world, NarrowScratch& scratch, float dt, float scale)
+        : world_(world), scratch_(scratch), scale_(scale) {
+        scratch_.motion.frames = scratch_.kept.frames = world.frames.data();
+        scratch_.motion.poses = scratch_.kept.poses = world.pairs.poses.data();
+        scratch_.motion.dt = dt;
+        scratch_.motion.fall = 0.5f * dt * dt * length(world.config.gravity);
+        scratch_.kept.found = world.found_separations.data();
+        scratch_.kept.records = world.records.data();
+    }
+
+    void run(int begin, int end) {
+        gather(static_cast<uint32_t>(begin), static_cast<uint32_t>(end));
+        world_.narrow_kernels.test_motion(scratch_.motion);
+        scratch_.kept.count = boxed_ = 0;
+        for (int i = 0; i < scratch_.motion.count; ++i) sort(i);
+        flush_kept();
+        collide_boxes();
+    }
+
+private:
+    // Lists the pairs whose bodies may have moved; of the others everything still stands.
+    void gather(uint32_t begin, uint32_t end) {
+        MotionBatch& motion = scratch_.motion;
+        motion.count = 0;
+        for (uint32_t i = begin; i < end; ++i) {
+            ColliderPair& p = world_.pairs.now[i];
+            if (p.kind == PairKind::trigger) {
+                p.hit = overlap(collide_input(world_, p, 0.0f), world_.pairs.caches[p.cache], settings());
+                continue;
+            }
+            uint32_t a = collider_a(p), b = collider_b(p);
+            if (world_.still[a] & world_.still[b] & static_cast<uint8_t>(!p.begun)) {
+                for (uint32_t k = 0; k < p.count; ++k) {
+                    world_.records[p.first_record + k].pair = i;
+                    tally(p.first_record + k);
+                }
+                continue;
+            }
+            p.begun = false;
+            int k = motion.count++;
+            scratch_.tested[k] = i;
+            motion.a[k] = static_cast<int32_t>(a), motion.b[k] = static_cast<int32_t>(b);
+            motion.pose[k] = static_cast<int32_t>(p.cache);
+        }
+    }
+
+    void sort(int i) {
+        const MotionBatch& motion = scratch_.motion;
+        uint32_t index = scratch_.tested[i];
+        ColliderPair& p = world_.pairs.now[index];
+        if (motion.kept[i] > 0.0f) {
+            keep(p, index, i);
+        } else if (p.kind == PairKind::boxes) {
+            auto& boxes = scratch_.boxes;
+            int k = boxed_++;
+            scratch_.boxed[k] = index;
+            boxes.a[k] = motion.a[i], boxes.b[k] = motion.b[i];
+            boxes.margin[k] = motion.margin[i];
+            boxes.feature[k] = world_.pairs.poses[p.cache].feature;
+        } else if (p.capacity == 1) {
+            collide_single(p, index, motion.margin[i]);
+        } else {
+            collide_mesh(p, index, motion.margin[i]);
+        }
+    }
+
+    void keep(const ColliderPair& p, uint32_t index, int i) {
+        RefreshBatch& kept = scratch_.kept;
+        if (kept.count + p.count > batch_capacity) flush_kept();
+        for (uint32_t m = 0; m < p.count; ++m) {
+            int k = kept.count++;
+            kept.a[k] = scratch_.motion.a[i], kept.b[k] = scratch_.motion.b[i];
+            kept.pose[k] = scratch_.motion.pose[i];
+            kept.record[k] = static_cast<int32_t>(p.first_record + m);
+            ContactRecord& r = world_.records[p.first_record + m];
+            r.pair = index;
+            if (scale_ != 1.0f) scale_impulses(r, scale_);
+        }
+    }
+    void flush_kept() {
+        world_.narrow_kernels.refresh(scratch_.kept);
+        for (int k = 0; k < scratch_.kept.count; ++k) tally(static_cast<uint32_t>(scratch_.kept.record[k]));
+        scratch_.kept.count = 0;
+    }
+
+    // For the statistics of the step; whole numbers and a maximum, so the order does not matter.
+    void tally(uint32_t record) {
+        const ContactRecord& r = world_.records[record];
+        for (const ContactPointRecord& p : r.points) {
+            scratch_.contact_points += p.separation <= 0.0f;
+            scratch_.max_penetration = maximum(scratch_.max_penetration, -p.separation);
+        }
+    }
+
+    // A pair of convex shapes, or one with a plane.
+    void collide_single(ColliderPair& p, uint32_t index, float margin) {
+        PairCache& cache = world_.pairs.caches[p.cache];
+        Manifold manifold;
+        int count = collide(collide_input(world_, p, margin), cache, settings(), &manifold, 1);
+        if (count > 0) write_single(p, index, manifold);
+        finish(p, count, margin, cache.clearance);
+    }
+
+    template <class SomeManifold>
+    void write_single(ColliderPair& p, uint32_t index, const SomeManifold& manifold) {
+        const ShapeFrame &a = world_.frames[collider_a(p)], &b = world_.frames[collider_b(p)];
+        ContactRecord& r = record(p, 0);
+        if (p.count > 0) {
+            const OldContact old(r);
+            fill_record(r, a, b, manifold);
+            warm_start(r, old, a, b, scale_);
+        } else {
+            fill_record(r, a, b, manifold);
+            clear_impulses(r);
+        }
+        r.pair = index;
+    }
+
+    void collide_mesh(ColliderPair& p, uint32_t index, float margin) {
+        PairCache& cache = world_.pairs.caches[p.cache];
+        Manifold manifolds[max_mesh_manifolds];
+        int count = collide(collide_input(world_, p, margin), cache, settings(), manifolds, p.capacity);
+        const ShapeFrame &a = world_.frames[collider_a(p)], &b = world_.frames[collider_b(p)];
+        alignas(OldContact) std::byte room[max_mesh_manifolds * sizeof(OldContact)];
+        auto* old = reinterpret_cast<OldContact*>(room);
+        for (int i = 0; i < p.count; ++i) new (old + i) OldContact(world_.records[p.first_record + i]);
+        for (int i = 0; i < count; ++i) {
+            ContactRecord& r = record(p, i);
+            fill_record(r, a, b, manifolds[i]);
+            int k = 0;
+            while (k < p.count && old[k].key != r.key) ++k;
+            if (k < p.count) warm_start(r, old[k], a, b, scale_);
+            else clear_impulses(r);
+            r.pair = index;
+        }
+        finish(p, count, margin, cache.clearance);
+    }
+
+    // The pair's record number `i`, with its lasting parts filled in.
+    ContactRecord& record(ColliderPair& p, int i) {
+        ContactRecord& r = world_.records[p.first_record + static_cast<uint32_t>(i)];
+        if (i < p.prepared) return r;
+        prepare_record(world_, p, r);
+        p.prepared = static_cast<uint8_t>(i + 1);
+        return r;
+    }
+
+    void collide_boxes() {
+        auto& boxes = scratch_.boxes;
+        BoxBatch batch = boxes.batch(world_.frames.data(), boxed_);
+        world_.narrow_kernels.collide_boxes(batch);
+        for (int k = 0; k < boxed_; ++k) {
+            uint32_t index = scratch_.boxed[k];
+            ColliderPair& p = world_.pairs.now[index];
+            KeptPose& pose = world_.pairs.poses[p.cache];
+            if (boxes.clearance[k] > boxes.margin[k]) {
+                finish(p, 0, boxes.margin[k], boxes.clearance[k]);
+            } else if (boxes.out[k].count == 0) {
+                // The faces or edges that face each other do not overlap: the boxes are apart, corner to edge or corner
+                // to corner, and the separating axis is not the direction of the shortest distance.
+                pose.feature = 0.0f;
+                collide_single(p, index, boxes.margin[k]);
+            } else {
+                pose.feature = boxes.feature[k];
+                write_single(p, index, boxes.out[k]);
+                finish(p, 1, boxes.margin[k], 0.0f);
+            }
+        }
+    }
+
+    // `clearance`: least distance of the surfaces, where there are no manifolds.
+    void finish(ColliderPair& p, int count, float margin, float clearance) {
+        p.count = static_cast<uint8_t>(count);
+        for (int i = 0; i < count; ++i) tally(p.first_record + static_cast<uint32_t>(i));
+        KeptPose& pose = world_.pairs.poses[p.cache];
+        pose.clearance = unkept;
+        if (p.kind == PairKind::round) return;
+        uint32_t a = collider_a(p), b = collider_b(p);
+        const ShapeFrame &fa = world_.frames[a], &fb = world_.frames[b];
+        float near = minimum(fa.near, fb.near);
+        for (int k = 0; k < 4; ++k) pose.rotation_a[k] = fa.rotation[k], pose.rotation_b[k] = fb.rotation[k];
+        for (int k = 0; k < 3; ++k) pose.offset[k] = fb.centre[k] - fa.centre[k];
+        pose.tolerance = count > 0 ? kept_share * near : 1e30f;
+        pose.clearance = count > 0 ? margin + near : clearance;
+        for (int i = 0; i < count; ++i) {
+            uint32_t record = p.first_record + static_cast<uint32_t>(i);
+            for (int j = 0; j < 4; ++j)
+                world_.found_separations[record].s[j] = world_.records[record].points[j].separation;
+        }
+    }
+
+    CollideSettings settings() const { return {world_.config.simplex}; }
+
+    WorldData& world_;
+    NarrowScratch& scratch_;
+    int boxed_ = 0;  // pairs in the lists of boxes
+    float scale_;
+};
+
+// The lists that later stages go through, in the order of pairs.
+void list_contacts(WorldData& world) {
+    world.touching.clear();
+    world.overlaps.clear();
+    for (const ColliderPair& p : world.pairs.now) {
+        for (uint32_t k = 0; k < p.count; ++k) world.touching.push_back(p.first_record + k);
+        if (!p.hit) continue;
+        bool first_is_trigger = world.colliders.info[p.a].is_trigger;
+        uint32_t trigger = first_is_trigger ? p.a : p.b, other = first_is_trigger ? p.b : p.a;
+        world.overlaps.push_back({world.bodies.id(world.colliders.info[trigger].body),
+                                  world.bodies.id(world.colliders.info[other].body), world.colliders.id(trigger),
+                                  world.colliders.id(other)});
+    }
+}
+
+}  // namespace
+
+void find_box_pairs(WorldData& world) {
+    world.box_pairs.clear();
+    world.broad_phase.find_pairs(world.tasks, world.box_pairs);
+}
+
+void match_pairs(WorldData& world) {
+    size_t kept = 0;
+    for (const BoxPair& p : world.box_pairs)
+        if (wanted(world, p)) world.box_pairs[kept++] = p;
+    world.box_pairs.resize_unset(kept);
+    world.pairs.update(world.box_pairs);
+    for (uint32_t i : world.pairs.begun) begin_pair(world, world.pairs.now[i]);
+}
+
+void find_contacts(WorldData& world, float dt) {
+    float h = dt / static_cast<float>(world.config.solver_steps);
+    float scale = world.last_h > 0.0f ? h / world.last_h : 0.0f;
+    world.records.resize_unset(world.pairs.record_count);
+    world.found_separations.resize_unset(world.pairs.record_count);
+    world.narrow_scratch.resize_unset(static_cast<size_t>(world.tasks.workers()));
+    for (NarrowScratch& s : world.narrow_scratch) s.contact_points = 0, s.max_penetration = 0.0f;
+    int count = world.pairs.now.count();
+    int grain = count / (8 * world.tasks.workers());
+    grain = grain < fewest_per_task ? fewest_per_task : grain > batch_capacity ? batch_capacity : grain;
+    world.tasks.for_each(count, grain, [&](int begin, int end, int worker) {
+        Chunk chunk(world, world.narrow_scratch[static_cast<size_t>(worker)], dt, scale);
+        for (int i = begin; i < end; i += batch_capacity)
+            chunk.run(i, end - i < batch_capacity ? end : i + batch_capacity);
+    });
+    list_contacts(world);
+    world.statistics.contact_points = 0;
+    world.statistics.max_penetration = 0.0f;
+    for (const NarrowScratch& s : world.narrow_scratch) {
+        world.statistics.contact_points += s.contact_points;
+        world.statistics.max_penetration = maximum(world.statistics.max_penetration, s.max_penetration);
+    }
+}
+
+}  // namespace lendulet

@@ -1,0 +1,23 @@
+// The one source of the narrow phase's wide kernels. Included by one unit per instruction set, which defines
+// LENDULET_KERNEL_SPACE: the namespace that keeps the copies apart, so that the linker can never give a unit the code
+// of a wider machine.
+#include <type_traits>
+
+#include "math/wide/gather.h"
+#include "math/wide/wide.h"
+#include "world/narrow/kernels.h"
+
+namespace lendulet::LENDULET_KERNEL_SPACE {
+namespace {
+
+#include "collision/batch/boxes.inl"
+
+#include "world/narrow/recycle.inl"
+
+template <int W>
+constexpr NarrowKernels make_narrow_kernels() {
+    return {W, test_motion<W>, refresh<W>, collide_boxes<W>};
+}
+
+}  // namespace
+}  // namespace lendulet::LENDULET_KERNEL_SPACE

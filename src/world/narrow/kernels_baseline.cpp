@@ -1,0 +1,11 @@
+// Narrow-phase kernels in the instructions every machine has, one lane and four.
+#define LENDULET_KERNEL_SPACE narrow_baseline
+#include "world/narrow/kernels.inl"
+
+namespace lendulet {
+
+extern const NarrowKernels baseline_narrow_1, baseline_narrow_4;
+constexpr NarrowKernels baseline_narrow_1 = narrow_baseline::make_narrow_kernels<1>();
+constexpr NarrowKernels baseline_narrow_4 = narrow_baseline::make_narrow_kernels<4>();
+
+}  // namespace lendulet
