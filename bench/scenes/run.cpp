@@ -1,4 +1,4 @@
-#include "bench/run.h"
+#include "bench/scenes/run.h"
 
 #include <algorithm>
 #include <chrono>

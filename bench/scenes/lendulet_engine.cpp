@@ -1,5 +1,5 @@
 // This engine, as the benchmark sees it.
-#include "bench/engine.h"
+#include "bench/scenes/engine.h"
 
 namespace lendulet::bench {
 namespace {

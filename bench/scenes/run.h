@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/engine.h"
-#include "bench/metrics.h"
+#include "bench/scenes/engine.h"
+#include "bench/scenes/metrics.h"
 
 namespace lendulet::bench {
 

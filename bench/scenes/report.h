@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/run.h"
+#include "bench/scenes/run.h"
 
 namespace lendulet::bench {
 

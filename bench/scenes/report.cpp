@@ -1,4 +1,4 @@
-#include "bench/report.h"
+#include "bench/scenes/report.h"
 
 #include <cstdio>
 #include <string_view>

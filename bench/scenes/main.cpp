@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/report.h"
-#include "bench/run.h"
+#include "bench/scenes/report.h"
+#include "bench/scenes/run.h"
 
 namespace lendulet::bench {
 namespace {
