@@ -102,6 +102,14 @@ void add_broad_phase_options(CLI::App& command, bench::BroadPhaseOptions& option
     command.add_option("--svg", options.svg, "draw the results as a chart")->type_name("FILE");
 }
 
+// An empty list or file name would pass for an option that was not given.
+void refuse_empty(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->count() > 0 && option->get_expected_max() > 0 && option->as<std::string>().empty())
+            throw BadOption{option->get_name() + " must not be empty"};
+    }
+}
+
 // The exit code of a benchmark, or 2 after its sentence.
 int finish(const Result<int>& measured) { return measured.ok() ? measured.value() : fail(measured.error().message); }
 
@@ -132,6 +140,7 @@ int execute(int argc, char** argv) {
     try {
         app.parse(argc, argv);
         if (run_command->parsed()) finish_run_options(*run_command, raw, options);
+        if (broad_phase_command->parsed()) refuse_empty(*broad_phase_command);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
         return fail(printable(error.what()));

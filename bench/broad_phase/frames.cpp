@@ -51,7 +51,7 @@ Frames::Frames(const Cell& cell) : cell_(cell), motion_(cell.distribution, make_
         (fixed ? fixed_ : moving_).push_back(box);
     }
     if (cell.mode == Mode::query) queries_ = make_queries(moving_, queries_per_frame);
-    if (cell.mode == Mode::refit) steps_.resize(static_cast<size_t>(std::clamp(boxes_in_steps / cell.n, 4, 400)));
+    if (cell.mode == Mode::refit) steps_.resize(static_cast<size_t>(std::clamp(boxes_in_steps / cell.n, 4, 100)));
     next_sample();
 }
 

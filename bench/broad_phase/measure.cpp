@@ -90,9 +90,11 @@ double Bench::expected_seconds(const SubjectType& type, const Cell& cell) {
 
 CellResult Bench::measure(const Cell& cell) {
     CellResult result{cell, {}, {}, {}};
+    std::vector<Entrant> entrants = enter(cell, result);
+    if (entrants.empty()) return result;
     Frames frames(cell);
     Agreement agreement(cell, result.different);
-    std::vector<Entrant> entrants = enter(cell, frames, agreement, result);
+    warm_up(entrants, frames, agreement, result);
     for (int round = 0; round < repeats_ && result.different.empty(); ++round) {
         frames.next_sample();
         agreement.begin();
@@ -111,30 +113,35 @@ CellResult Bench::measure(const Cell& cell) {
     return result;
 }
 
-// The first frame of every subject warms it up, is compared and says how many frames make a sample.
-std::vector<Bench::Entrant> Bench::enter(const Cell& cell, Frames& frames, Agreement& agreement, CellResult& result) {
+// All subjects but those whose frames would take too long.
+std::vector<Bench::Entrant> Bench::enter(const Cell& cell, CellResult& result) {
     std::vector<Entrant> entrants;
-    agreement.begin();
     for (const SubjectType& type : types_) {
         double expected = expected_seconds(type, cell);
         if (expected > longest_frame_s) {
             result.skipped.push_back(type.name + " is left out: it would take about " + seconds_text(expected));
-            continue;
+        } else {
+            entrants.push_back({&type, type.make(), 1, {}, 0.0, false});
         }
-        Entrant e{&type, type.make(), 1, {}, 0.0, false};
+    }
+    return entrants;
+}
+
+// The first frame of every subject is compared and says how many frames make a sample; of the slow it is the sample.
+void Bench::warm_up(std::vector<Entrant>& entrants, Frames& frames, Agreement& agreement, CellResult& result) {
+    agreement.begin();
+    for (Entrant& e : entrants) {
         double start = now_s();
         frames.prepare(*e.subject);
         double frame_ns = frames.run(*e.subject, 1);
-        remember(type, cell, now_s() - start);
+        remember(*e.type, result.cell, now_s() - start);
         Frames::Found found = frames.found();
-        agreement.compare(type.name, found);
-        result.rows.push_back({type.name, cell, frame_ns, std::lround(found.per_frame)});
+        agreement.compare(e.type->name, found);
+        result.rows.push_back({e.type->name, result.cell, frame_ns, std::lround(found.per_frame)});
         e.frames = frames.frames_for(frame_ns);
         e.done = frame_ns > 1e9 * slow_s;
         if (e.done) e.samples.push_back(frame_ns);
-        entrants.push_back(std::move(e));
     }
-    return entrants;
 }
 
 }  // namespace lendulet::bench

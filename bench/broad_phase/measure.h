@@ -90,7 +90,8 @@ public:
 private:
     struct Entrant;
     class Agreement;
-    std::vector<Entrant> enter(const Cell& cell, Frames& frames, Agreement& agreement, CellResult& result);
+    std::vector<Entrant> enter(const Cell& cell, CellResult& result);
+    void warm_up(std::vector<Entrant>& entrants, Frames& frames, Agreement& agreement, CellResult& result);
     // What a frame with its preparation is likely to take, s, from smaller counts that are tried first; negative where
     // even those say nothing.
     double expected_seconds(const SubjectType& type, const Cell& cell);

@@ -41,7 +41,7 @@ float bell(Random& random) {
     return sum * 0.8660254f;
 }
 
-// Heaps of about a thousand boxes, spread so that a box meets four times as many others as in `uniform`.
+// Heaps of about a thousand boxes, spread so that a box meets about four times as many others as in `uniform`.
 Boxes clustered(Random& random, int count) {
     int heaps = std::max(1, count / 1000);
     float per_heap = static_cast<float>(count) / static_cast<float>(heaps);

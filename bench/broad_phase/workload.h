@@ -14,7 +14,7 @@ namespace lendulet::bench {
 using Boxes = std::vector<BroadBox>;
 
 // uniform: half extents 0.25 .. 0.5 m, centres anywhere in a cube of side 1.5 N^(1/3) m: about half a pair for each
-// box. clustered: the same boxes in Gaussian heaps of a thousand, four times as dense. ground: the same boxes lying up
+// box. clustered: the same boxes in Gaussian heaps of a thousand, three times as dense. ground: the same boxes lying up
 // to three high on one wide floor. one_huge: uniform, with one box around all the others.
 enum class Distribution : uint8_t { uniform, clustered, ground, one_huge };
 inline constexpr Distribution all_distributions[] = {Distribution::uniform, Distribution::clustered,
