@@ -6,6 +6,7 @@
 
 #include "apps/lendulet/commands.h"
 #include "bench/broad_phase/bench.h"
+#include "bench/scenes/bench.h"
 #include "io/file.h"
 
 namespace lendulet::cli {
@@ -102,6 +103,18 @@ void add_broad_phase_options(CLI::App& command, bench::BroadPhaseOptions& option
     command.add_option("--svg", options.svg, "draw the results as a chart")->type_name("FILE");
 }
 
+void add_scene_options(CLI::App& command, bench::SceneOptions& options) {
+    command.add_option("--scenes", options.scenes, "built-in scenes (default: 22 of them)")->type_name("NAME,…");
+    command.add_option("--threads", options.threads, "thread counts, 1 to 64 (default 1)")->type_name("N,…");
+    command.add_option("--steps", options.steps, "measured steps (default: what each scene is meant for)")
+        ->type_name("N")
+        ->check(CLI::PositiveNumber);
+    command.add_option("--repeats", options.repeats, "rounds (default 3)")->type_name("N");
+    command.add_option("--against", options.against, "bullet or none (default: bullet where it was built in)")
+        ->type_name("NAME");
+    command.add_option("--csv", options.csv, "write the results as CSV")->type_name("FILE");
+}
+
 // An empty list or file name would pass for an option that was not given.
 void refuse_empty(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options()) {
@@ -137,10 +150,14 @@ int execute(int argc, char** argv) {
     bench::BroadPhaseOptions broad_phase;
     CLI::App* broad_phase_command = bench_command->add_subcommand("broad-phase", "structures that find pairs of boxes");
     add_broad_phase_options(*broad_phase_command, broad_phase);
+    bench::SceneOptions bench_scene_options;
+    CLI::App* bench_scenes_command = bench_command->add_subcommand("scenes", "whole steps of built-in scenes");
+    add_scene_options(*bench_scenes_command, bench_scene_options);
     try {
         app.parse(argc, argv);
         if (run_command->parsed()) finish_run_options(*run_command, raw, options);
         if (broad_phase_command->parsed()) refuse_empty(*broad_phase_command);
+        if (bench_scenes_command->parsed()) refuse_empty(*bench_scenes_command);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
         return fail(printable(error.what()));
@@ -150,6 +167,7 @@ int execute(int argc, char** argv) {
     if (run_command->parsed()) return run(options);
     if (info_command->parsed()) return info(recording);
     if (scenes_command->parsed()) return list_scenes();
+    if (bench_scenes_command->parsed()) return finish(bench::bench_scenes(bench_scene_options));
     if (broad_phase_command->parsed()) return finish(bench::bench_broad_phase(broad_phase));
     return fail("a command is required");
 }

@@ -1,35 +1,16 @@
 #include "bench/broad_phase/bench.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
-#include <fstream>
-#include <optional>
 
 #include "bench/broad_phase/report.h"
+#include "bench/lists.h"
 #include "io/file.h"
 
 namespace lendulet::bench {
 namespace {
 
 constexpr int largest_size = 10'000'000;
-
-// The parts of a list; an empty part stays, so that it is refused.
-std::vector<std::string> parts_of(const std::string& list) {
-    std::vector<std::string> parts;
-    for (size_t begin = 0; begin <= list.size();) {
-        size_t end = std::min(list.find(',', begin), list.size());
-        parts.push_back(list.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return parts;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
-}
 
 Error unknown(const std::string& option, const std::string& what, const std::vector<std::string>& known) {
     return {ErrorCode::unknown_name, option + ": there is no \"" + printable(what) + "\"; there are " + joined(known)};
@@ -52,22 +33,6 @@ Result<std::vector<T>> choose(const std::string& option, const std::string& list
     return chosen;
 }
 
-Result<std::vector<int>> read_sizes(const std::string& list) {
-    std::vector<int> sizes;
-    for (const std::string& part : parts_of(list)) {
-        int size = 0;
-        auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), size);
-        if (error != std::errc() || end != part.data() + part.size() || size < 1 || size > largest_size) {
-            return Error{ErrorCode::bad_config,
-                         "--sizes must be whole numbers from 1 to 10000000, not \"" + printable(part) + "\""};
-        }
-        sizes.push_back(size);
-    }
-    std::sort(sizes.begin(), sizes.end());
-    sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
-    return sizes;
-}
-
 struct Plan {
     std::vector<Cell> cells;
     std::vector<SubjectType> subjects;
@@ -86,7 +51,8 @@ Result<Plan> plan(const BroadPhaseOptions& options) {
     auto subjects =
         choose("--structures", options.structures, all_subjects(), [](const SubjectType& type) { return type.name; });
     if (!subjects.ok()) return subjects.error();
-    auto sizes = read_sizes(options.sizes.empty() ? "10,100,1000,10000,100000,1000000" : options.sizes);
+    auto sizes = read_numbers("--sizes", options.sizes.empty() ? "10,100,1000,10000,100000,1000000" : options.sizes, 1,
+                              largest_size);
     if (!sizes.ok()) return sizes.error();
     Plan plan{{}, subjects.value()};
     for (Distribution distribution : distributions.value()) {
@@ -96,12 +62,6 @@ Result<Plan> plan(const BroadPhaseOptions& options) {
         }
     }
     return plan;
-}
-
-// Before anything is measured, so that a wrong name does not cost a long run. What is there stays for now.
-Status check_writable(const std::string& path) {
-    if (path.empty() || std::ofstream(path, std::ios::binary | std::ios::app)) return {};
-    return Error{ErrorCode::io, printable(path) + ": cannot be written"};
 }
 
 Status write(const std::string& path, const std::string& text) {
