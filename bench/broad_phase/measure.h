@@ -37,7 +37,8 @@ public:
     void prepare(Subject& subject) const;
     // Makes what the next sample works on: for refit frames the boxes move on.
     void next_sample();
-    // Runs the frames of a sample and gives the time of one, ns. `frames` of 0 asks for as many as the cell wants.
+    // Runs the frames of a sample and gives the time of one on this thread, ns. `frames` of 0 asks for as many as the
+    // cell wants.
     double run(Subject& subject, int frames = 0);
     // How many frames at least of one subject make a sample that the clock can measure, if one takes `frame_ns`.
     int frames_for(double frame_ns) const;

@@ -12,8 +12,11 @@ public:
     // Emptied first: a structure that knows its boxes again would only refit.
     void load(const Boxes& fixed, const Boxes& moving) override {
         broad_phase_.set_moving(nullptr, 0);
-        broad_phase_.set_fixed(nullptr, 0);
-        broad_phase_.set_fixed(fixed.data(), static_cast<int>(fixed.size()));
+        if (has_fixed_ || !fixed.empty()) {
+            broad_phase_.set_fixed(nullptr, 0);
+            broad_phase_.set_fixed(fixed.data(), static_cast<int>(fixed.size()));
+            has_fixed_ = !fixed.empty();
+        }
         broad_phase_.set_moving(moving.data(), static_cast<int>(moving.size()));
     }
 
@@ -36,6 +39,7 @@ public:
 private:
     TaskPool tasks_{1};
     BroadPhase broad_phase_;
+    bool has_fixed_ = false;
     std::vector<BoxQuery> batch_;
     Array<uint32_t> offsets_;
 };
