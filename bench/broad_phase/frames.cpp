@@ -11,14 +11,6 @@ namespace {
 constexpr double least_sample_ns = 3e5;  // a thousand times what reading the clock takes
 constexpr int boxes_in_steps = 40000;    // refit frames prepared at once hold about this many boxes, 1 MB
 
-// Of this thread's own time: where the machine does other things too, a long frame is interrupted more often than a
-// short one, and time on the wall would be unfair to it.
-double now_ns() {
-    timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
-}
-
 // Mixes two numbers well enough that sums of it tell sets apart (the finalizer of SplitMix64).
 uint64_t mix(uint64_t a, uint64_t b) {
     uint64_t x = (a << 32 | b) + 0x9e3779b97f4a7c15ull;
@@ -28,6 +20,12 @@ uint64_t mix(uint64_t a, uint64_t b) {
 }
 
 }  // namespace
+
+double thread_ns() {
+    timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
+}
 
 std::string_view name_of(Mode mode) {
     switch (mode) {
@@ -82,9 +80,9 @@ double Frames::run(Subject& subject, int frames) {
     frames_ = steps_.empty() ? std::max(frames, 1) : static_cast<int>(steps_.size());
     pairs_.clear();
     ended_.clear();
-    double start = now_ns();
+    double start = thread_ns();
     for (int i = 0; i < frames_; ++i) run_once(subject, steps_.empty() ? nullptr : &steps_[static_cast<size_t>(i)]);
-    return (now_ns() - start) / frames_;
+    return (thread_ns() - start) / frames_;
 }
 
 // Refit frames add to the lists, which are compared as a whole; the frames of the other modes are all the same.

@@ -28,6 +28,10 @@ struct Cell {
 };
 std::string name_of(const Cell& cell);  // "uniform, 1000 boxes, rebuild"
 
+// Time of this thread, ns. Where the machine does other things too, a long frame is interrupted more often than a short
+// one, and time on the wall would be unfair to it.
+double thread_ns();
+
 // The frames of one cell for one subject: what a sample times.
 class Frames {
 public:
