@@ -56,7 +56,7 @@ std::string turned_box(const Projection& view, const Pose& pose, Vec3 half) {
 
 std::string aabb_picture() {
     World world = WorldBuilder{}.no_gravity().build().value();
-    const Quat tilt = normalized(Quat{0.25f, 0.1f, 0.35f, 0.85f});
+    const Quat tilt = normalize(Quat{0.25f, 0.1f, 0.35f, 0.85f});
     const Pose poses[] = {{{-4.2f, 0, 0}, Quat{0, 0, 0, 1}}, {{0, 0, 0}, tilt}, {{4.2f, 0, 0}, tilt}};
     const Vec3 half{1.3f, 0.7f, 0.9f};
     const Shape shapes[] = {Sphere{1.2f}, Capsule{.half_height = 1.1f, .radius = 0.5f}, Box{half}};
@@ -155,7 +155,7 @@ std::string sweep_picture() {
 struct Level {
     std::vector<BroadPhaseBox> nodes;
     std::string drawn;
-    double share = 0.0;  // volume that two nodes share, as a part of the volume of all nodes
+    double all = 0.0, shared = 0.0;  // volume of all nodes, and what each two of them share, m^3
 };
 
 double volume(const float lower[3], const float upper[3]) {
@@ -165,10 +165,9 @@ double volume(const float lower[3], const float upper[3]) {
 }
 
 void add_overlaps(const Projection& view, Level& level) {
-    double all = 0.0, shared = 0.0;
     for (size_t i = 0; i < level.nodes.size(); ++i) {
         const BroadPhaseBox& a = level.nodes[i];
-        all += volume(a.lower, a.upper);
+        level.all += volume(a.lower, a.upper);
         for (size_t j = 0; j < i; ++j) {
             const BroadPhaseBox& b = level.nodes[j];
             if (!meets(a, b)) continue;
@@ -177,11 +176,10 @@ void add_overlaps(const Projection& view, Level& level) {
                 lower[d] = std::max(a.lower[d], b.lower[d]);
                 upper[d] = std::min(a.upper[d], b.upper[d]);
             }
-            shared += volume(lower, upper);
+            level.shared += volume(lower, upper);
             level.drawn += solid_box(view, lower, upper, "fill=\"#c0392b\" fill-opacity=\"0.16\"");
         }
     }
-    level.share = shared / all;
 }
 
 // `above` levels over the one whose nodes hold the boxes.
@@ -199,28 +197,28 @@ Level draw_level(const Projection& view, const std::vector<BroadPhaseBox>& own, 
 }
 
 std::string rtree_picture() {
-    Boxes given = make_boxes(Distribution::uniform, 300);
+    Boxes given = make_boxes(Distribution::uniform, 512);
     struct Column {
         BroadPhaseType type;
         const char* title;
     };
     const Column columns[] = {{BroadPhaseType::rtree_quadratic, "R-tree by insertion, quadratic split"},
                               {BroadPhaseType::rtree_omt, "OMT"}};
-    constexpr double wide = 460, high = 410;
+    constexpr double wide = 430, high = 425;
     std::string body;
     for (int c = 0; c < 2; ++c) {
         std::vector<BroadPhaseBox> own = boxes_of(columns[c].type, given);
         body += text_at({30 + wide * c, 28}, columns[c].title, "font-weight=\"bold\"");
         for (int row = 0; row < 2; ++row) {
-            Projection view{27, {190 + wide * c, 330 + high * row}};
+            Projection view{20, {165 + wide * c, 300 + high * row}};
             Level level = draw_level(view, own, 1 - row);
             body += level.drawn;
             body += text_at({30 + wide * c, 56 + high * row},
-                            format("%d nodes, %.0f %% of their volume shared (red)",
-                                   static_cast<int>(level.nodes.size()), 100.0 * level.share));
+                            format("%d nodes of %.0f m³, shared (red) %.0f m³", static_cast<int>(level.nodes.size()),
+                                   level.all, level.shared));
         }
     }
-    return picture(2 * wide, 2 * high + 20, body);
+    return picture(2 * wide, 2 * high + 40, body);
 }
 
 }  // namespace

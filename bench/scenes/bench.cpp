@@ -34,6 +34,7 @@ Result<int> bench_scenes(const SceneOptions& options) {
         Result<scenes::SceneDescription> scene = scenes::describe_scene(name);
         if (!scene.ok()) return scene.error();
         scenes.push_back(std::move(scene).value());
+        scenes.back().name = name;  // as it was asked for: stack_20, not stack:20
     }
     Status writable = check_writable(options.csv);
     if (!writable.ok()) return writable.error();

@@ -57,6 +57,34 @@ TEST(Bench, BadOptionsAreOneSentence) {
     expect_refused({"broad-phase", "extra"}, "extra");
 }
 
+TEST(Bench, ScenesWriteTableAndCsv) {
+    std::string csv = scratch("scenes.csv");
+    Outcome outcome = lendulet({"bench", "scenes", "--scenes", "stack_3,two_boxes", "--threads", "1,2", "--steps", "5",
+                                "--repeats", "1", "--against", "none", "--csv", csv});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    std::string text = content(csv);
+    EXPECT_EQ(
+        text.rfind("engine,scene,threads,bodies,median_ms,p99_ms,first_ms,mean_ms,contacts,pen_mean_mm,pen_p99_mm,"
+                   "pen_max_mm,joint_error_mean_mm,joint_error_max_mm,top_error_mm,drift_mm,stands,hash\n",
+                   0),
+        0u);
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5) << text;
+    EXPECT_EQ(std::count(text.begin(), text.end(), ','), 5 * 17) << text;
+    EXPECT_NE(text.find("\nlendulet,stack_3,2,3,"), std::string::npos) << text;
+    EXPECT_NE(text.find(",true,"), std::string::npos) << text;
+}
+
+TEST(Bench, BadSceneOptionsAreOneSentence) {
+    expect_refused({"scenes", "--scenes", "stack_3,no_such_scene"}, "no_such_scene");
+    expect_refused({"scenes", "--scenes="}, "--scenes must not be empty");
+    expect_refused({"scenes", "--threads", "0"}, "--threads must be whole numbers from 1 to 64");
+    expect_refused({"scenes", "--threads", "1,65"}, "--threads");
+    expect_refused({"scenes", "--steps", "0"}, "--steps");
+    expect_refused({"scenes", "--repeats", "101"}, "--repeats must be 1 to 100");
+    expect_refused({"scenes", "--against", "everyone"}, "there are bullet, none");
+    expect_refused({"scenes", "--csv", "/no/such/directory/x"}, "/no/such/directory/x");
+}
+
 // A wrong name of the second file must not have emptied the first.
 TEST(Bench, NothingIsWrittenWhereAnOptionIsRefused) {
     std::string csv = scratch("kept.csv");
