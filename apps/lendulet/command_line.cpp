@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "apps/lendulet/commands.h"
+#include "bench/broad_phase/bench.h"
+#include "bench/scenes/bench.h"
 #include "io/file.h"
 
 namespace lendulet::cli {
@@ -91,13 +93,48 @@ void finish_run_options(const CLI::App& command, const RawOptions& raw, RunOptio
     options.given.width = command.count("--width") > 0;
 }
 
+void add_broad_phase_options(CLI::App& command, bench::BroadPhaseOptions& options) {
+    command.add_option("--sizes", options.sizes, "numbers of boxes (default 10 to 100000, uniform to 1000000)")
+        ->type_name("N,N,…");
+    command.add_option("--distributions", options.distributions, "uniform, clustered, ground, one-huge (default all)")
+        ->type_name("NAME,…");
+    command.add_option("--modes", options.modes, "rebuild, split, refit, query (default all)")->type_name("NAME,…");
+    command.add_option("--structures", options.structures, "broad phases and peers (default all)")->type_name("NAME,…");
+    command.add_option("--repeats", options.repeats, "samples of each structure (default 15)")->type_name("N");
+    command.add_option("--csv", options.csv, "write the results as CSV")->type_name("FILE");
+    command.add_option("--svg", options.svg, "draw the results as a chart")->type_name("FILE");
+}
+
+void add_scene_options(CLI::App& command, bench::SceneOptions& options) {
+    command.add_option("--scenes", options.scenes, "built-in scenes (default: 22 of them)")->type_name("NAME,…");
+    command.add_option("--threads", options.threads, "thread counts, 1 to 64 (default 1)")->type_name("N,…");
+    command.add_option("--steps", options.steps, "measured steps (default: what each scene is meant for)")
+        ->type_name("N")
+        ->check(CLI::PositiveNumber);
+    command.add_option("--repeats", options.repeats, "rounds (default 3)")->type_name("N");
+    command.add_option("--against", options.against, "bullet or none (default: bullet where it was built in)")
+        ->type_name("NAME");
+    command.add_option("--csv", options.csv, "write the results as CSV")->type_name("FILE");
+}
+
+// An empty list or file name would pass for an option that was not given.
+void refuse_empty(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->count() > 0 && option->get_expected_max() > 0 && option->as<std::string>().empty())
+            throw BadOption{option->get_name() + " must not be empty"};
+    }
+}
+
+// The exit code of a benchmark, or 2 after its sentence.
+int finish(const Result<int>& measured) { return measured.ok() ? measured.value() : fail(measured.error().message); }
+
 }  // namespace
 
 int execute(int argc, char** argv) {
-    if (argc < 2) return fail("a command is required: run, info or scenes (--help says more)");
+    if (argc < 2) return fail("a command is required: run, info, scenes or bench (--help says more)");
     std::string first = argv[1];
-    if (first.rfind('-', 0) != 0 && first != "run" && first != "info" && first != "scenes") {
-        return fail("\"" + printable(first) + "\" is no command; there are run, info and scenes");
+    if (first.rfind('-', 0) != 0 && first != "run" && first != "info" && first != "scenes" && first != "bench") {
+        return fail("\"" + printable(first) + "\" is no command; there are run, info, scenes and bench");
     }
     CLI::App app{"Lendulet: rigid bodies in three dimensions.", "lendulet"};
     app.set_version_flag("--version", "lendulet " LENDULET_VERSION);
@@ -110,9 +147,19 @@ int execute(int argc, char** argv) {
     CLI::App* info_command = app.add_subcommand("info", "check and describe a recording");
     info_command->add_option("FILE", recording, "a recording made by `lendulet run --record`")->required();
     CLI::App* scenes_command = app.add_subcommand("scenes", "list the built-in scenes");
+    CLI::App* bench_command = app.add_subcommand("bench", "measure this engine beside others");
+    bench_command->require_subcommand(1);
+    bench::BroadPhaseOptions broad_phase;
+    CLI::App* broad_phase_command = bench_command->add_subcommand("broad-phase", "structures that find pairs of boxes");
+    add_broad_phase_options(*broad_phase_command, broad_phase);
+    bench::SceneOptions bench_scene_options;
+    CLI::App* bench_scenes_command = bench_command->add_subcommand("scenes", "whole steps of built-in scenes");
+    add_scene_options(*bench_scenes_command, bench_scene_options);
     try {
         app.parse(argc, argv);
         if (run_command->parsed()) finish_run_options(*run_command, raw, options);
+        if (broad_phase_command->parsed()) refuse_empty(*broad_phase_command);
+        if (bench_scenes_command->parsed()) refuse_empty(*bench_scenes_command);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
         return fail(printable(error.what()));
@@ -122,6 +169,8 @@ int execute(int argc, char** argv) {
     if (run_command->parsed()) return run(options);
     if (info_command->parsed()) return info(recording);
     if (scenes_command->parsed()) return list_scenes();
+    if (bench_scenes_command->parsed()) return finish(bench::bench_scenes(bench_scene_options));
+    if (broad_phase_command->parsed()) return finish(bench::bench_broad_phase(broad_phase));
     return fail("a command is required");
 }
 

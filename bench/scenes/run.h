@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/engine.h"
-#include "bench/metrics.h"
+#include "bench/scenes/engine.h"
+#include "bench/scenes/metrics.h"
 
 namespace lendulet::bench {
 
@@ -23,8 +23,12 @@ struct RunResult {
     Penetration penetration;
     JointError joints;
     Drift drift;
+    bool stands = true;
+    uint64_t hash = 0;  // of this engine's state after the last step; of other engines' poses
     double stage_ms[static_cast<int>(Stage::count)] = {};  // medians; zero for engines that do not tell
 };
+
+bool has_bullet();
 
 // Engines run by turns (A B A B ...), each with a new world every round, so that whatever else the machine does meets
 // all of them. Runs are repeatable, so the time of step i is the least of all rounds; figures are taken from that

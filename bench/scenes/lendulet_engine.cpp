@@ -1,5 +1,5 @@
 // This engine, as the benchmark sees it.
-#include "bench/engine.h"
+#include "bench/scenes/engine.h"
 
 namespace lendulet::bench {
 namespace {
@@ -18,6 +18,7 @@ public:
         return {ref.position(), ref.orientation()};
     }
     int contact_points() const override { return scene_.world.statistics().contact_points; }
+    uint64_t hash() const override { return scene_.world.hash(); }
     const StepStatistics* statistics() const override { return &scene_.world.statistics(); }
 
 private:

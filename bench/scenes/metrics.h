@@ -27,7 +27,11 @@ struct Drift {
     double last_sinks = 0.0;  // how far the last body (the top of stacks and pyramids) came down, m
     double mean_speed = 0.0;  // m/s, from the last two poses
     int not_finite = 0;
+    double lowest_way = 0.0, highest_way = 0.0;  // of all bodies along y, m
 };
+// False where a body is not finite or has left the scene (100 m below where it began), or where something that is built
+// to stand (stacks, pyramids, mass ratios) has a body that is half a metre from its place.
+bool stands(const scenes::SceneDescription& scene, const Drift& drift);
 Drift drift(const scenes::SceneDescription& scene, const std::vector<Pose>& before_last, const std::vector<Pose>& last);
 
 }  // namespace lendulet::bench

@@ -1,6 +1,7 @@
-#include "bench/run.h"
+#include "bench/scenes/run.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cstdio>
 
@@ -23,6 +24,17 @@ std::vector<Pose> poses_of(const Engine& engine, const scenes::SceneDescription&
     return poses;
 }
 
+// FNV-1a over the bits of positions and orientations.
+uint64_t hash_of(const std::vector<Pose>& poses) {
+    uint64_t hash = 0xcbf29ce484222325ull;
+    for (const Pose& pose : poses) {
+        const float numbers[] = {pose.position.x,    pose.position.y,    pose.position.z,   pose.orientation.x,
+                                 pose.orientation.y, pose.orientation.z, pose.orientation.w};
+        for (float number : numbers) hash = (hash ^ std::bit_cast<uint32_t>(number)) * 0x100000001b3ull;
+    }
+    return hash;
+}
+
 // The times of one engine over all rounds.
 struct Series {
     MakeEngine make;
@@ -40,6 +52,9 @@ void measure_end(const Engine& engine, const scenes::SceneDescription& scene, co
     result.penetration = penetration(scene, end);
     result.joints = joint_error(scene, end);
     result.drift = drift(scene, before, end);
+    result.stands = stands(scene, result.drift);
+    result.hash = engine.hash();
+    if (result.hash == 0) result.hash = hash_of(end);
 }
 
 void run_round(const scenes::SceneDescription& scene, const RunSettings& settings, int steps, Series& series) {
@@ -79,6 +94,14 @@ void summarize(Series& series) {
 }
 
 }  // namespace
+
+bool has_bullet() {
+#ifdef LENDULET_BENCH_BULLET
+    return true;
+#else
+    return false;
+#endif
+}
 
 std::vector<RunResult> run_scene(const scenes::SceneDescription& scene, const RunSettings& settings) {
     std::vector<Series> all;

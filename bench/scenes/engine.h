@@ -23,6 +23,8 @@ public:
     virtual void step(int number) = 0;
     virtual Pose pose(int body) const = 0;  // of bodies as counted in the description
     virtual int contact_points() const = 0;
+    // Of the whole state, where the engine has such a hash; else 0, and the poses are hashed.
+    virtual uint64_t hash() const { return 0; }
     // What the engine itself says of its last step, for tables by stage; null where it says nothing.
     virtual const StepStatistics* statistics() const { return nullptr; }
 };

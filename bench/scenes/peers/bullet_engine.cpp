@@ -5,7 +5,7 @@
 #include <cmath>
 #include <variant>
 
-#include "bench/engine.h"
+#include "bench/scenes/engine.h"
 
 namespace lendulet::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "bench/metrics.h"
+#include "bench/scenes/metrics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -165,9 +165,20 @@ Drift drift(const scenes::SceneDescription& scene, const std::vector<Pose>& befo
         result.mean_speed += speed;
         result.sideways = std::fmax(result.sideways, std::hypot(way.x, way.z));
         result.last_sinks = -way.y;
+        result.lowest_way = std::fmin(result.lowest_way, way.y);
+        result.highest_way = std::fmax(result.highest_way, way.y);
     }
     if (moving > 0) result.mean_speed /= moving;
     return result;
+}
+
+bool stands(const scenes::SceneDescription& scene, const Drift& drift) {
+    constexpr double away = 0.5, escaped = 100.0;  // m
+    if (drift.not_finite > 0 || drift.lowest_way < -escaped || drift.highest_way > escaped) return false;
+    bool built_to_stand = false;
+    for (const char* kind : {"stack", "large_pyramid", "many_pyramids", "mass_ratio"})
+        built_to_stand = built_to_stand || scene.name.starts_with(kind);
+    return !built_to_stand || (drift.sideways < away && drift.lowest_way > -away && drift.highest_way < away);
 }
 
 }  // namespace lendulet::bench
