@@ -42,19 +42,20 @@ LENDULET_FORCE_INLINE WideBox spread_lane(const BoxBlock& block, int lane) {
     return box;
 }
 
-// Bit i is set where box i of the block overlaps `box`; intervals are closed, so touching counts.
-LENDULET_FORCE_INLINE uint32_t overlaps(const BoxBlock& block, const WideBox& box) {
-    uint32_t bits = 0;
-    for (int half = 0; half < block_size; half += 4) {
-        auto hit = load_wide<Float4>(block.lower[0] + half) <= box.upper[0];
-        hit &= load_wide<Float4>(block.upper[0] + half) >= box.lower[0];
-        for (int d = 1; d < 3; ++d) {
-            hit &= load_wide<Float4>(block.lower[d] + half) <= box.upper[d];
-            hit &= load_wide<Float4>(block.upper[d] + half) >= box.lower[d];
-        }
-        bits |= mask_bits(hit) << half;
+// Bit i is set where box `half` + i of the block overlaps `box`, i = 0 .. 3; intervals are closed, so touching counts.
+LENDULET_FORCE_INLINE uint32_t overlaps_half(const BoxBlock& block, int half, const WideBox& box) {
+    auto hit = load_wide<Float4>(block.lower[0] + half) <= box.upper[0];
+    hit &= load_wide<Float4>(block.upper[0] + half) >= box.lower[0];
+    for (int d = 1; d < 3; ++d) {
+        hit &= load_wide<Float4>(block.lower[d] + half) <= box.upper[d];
+        hit &= load_wide<Float4>(block.upper[d] + half) >= box.lower[d];
     }
-    return bits;
+    return mask_bits(hit);
+}
+
+// The same for all eight.
+LENDULET_FORCE_INLINE uint32_t overlaps(const BoxBlock& block, const WideBox& box) {
+    return overlaps_half(block, 0, box) | overlaps_half(block, 4, box) << 4;
 }
 
 inline bool overlap(const BroadBox& a, const float lower[3], const float upper[3]) {
@@ -66,8 +67,8 @@ inline bool overlap(const BroadBox& a, const float lower[3], const float upper[3
 inline bool bounded(const BroadBox& box) {
     bool yes = true;
     for (int d = 0; d < 3; ++d) {
-        yes &= box.lower[d] > -infinity && box.lower[d] < infinity && box.upper[d] > -infinity &&
-               box.upper[d] < infinity;
+        yes &=
+            box.lower[d] > -infinity && box.lower[d] < infinity && box.upper[d] > -infinity && box.upper[d] < infinity;
     }
     return yes;
 }

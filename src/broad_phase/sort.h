@@ -16,6 +16,13 @@ inline uint32_t ordered_bits(float x) {
     return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
+inline float float_of(uint32_t ordered) {
+    uint32_t bits = ordered & 0x80000000u ? ordered & 0x7fffffffu : ~ordered;
+    float x;
+    std::memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
 // Sorts keys by their bits from `first_bit` on; the order of keys equal there is left as it is if all of them stand in
 // rising order before, else unspecified only for keys that are equal altogether. The sorted keys are left in `keys`,
 // whose memory may have changed hands with that of `swap`.

@@ -218,7 +218,7 @@ TEST_P(QueryTest, BatchesAnswerAsSingleQueriesDo) {
         same(by_cast[i], broad_phase_.cast_box(casts[i].lower, casts[i].upper, casts[i].translation, 1, t));
         same(by_point[i], broad_phase_.nearest(points[i].point, points[i].max_distance, t));
     }
-    EXPECT_GT(found, n);
+    EXPECT_GT(found, n / 2);
     broad_phase_.query_boxes(tasks, nullptr, 0, offsets, hits);
     EXPECT_EQ(offsets.count(), 1);
 }

@@ -101,6 +101,7 @@ private:
     void change_box(const BroadBox& box, uint32_t place);
 
     int count_ = 0;
+    int64_t changed_ = 0;  // boxes since the tree was built
     Ref root_ = 0;
     uint32_t reinserted_levels_ = 0;  // a bit for each level that reinserted during the present insertion
     Array<BoxBlock> blocks_;

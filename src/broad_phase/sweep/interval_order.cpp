@@ -1,17 +1,71 @@
 #include "broad_phase/sweep/interval_order.h"
 
+#include <utility>
+
+#include "broad_phase/block.h"
+
 namespace lendulet {
 
+namespace {
+
+// A handful of keys: each is compared with each, and goes where the number of smaller ones says. No branch depends on
+// the keys.
+constexpr size_t handful = 16;
+void sort_handful(Array<uint64_t>& keys, Array<uint64_t>& swap) {
+    size_t n = keys.size();
+    uint32_t smaller[handful] = {};
+    for (size_t i = 1; i < n; ++i) {
+        for (size_t j = 0; j < i; ++j) {
+            bool before = keys[j] < keys[i];
+            smaller[i] += before;
+            smaller[j] += !before;
+        }
+    }
+    swap.resize_unset(n);
+    for (size_t i = 0; i < n; ++i) swap[smaller[i]] = keys[i];
+    keys.swap(swap);
+}
+
+// A hundred keys are dealt to as many drawers as there are bits in a byte, by where they lie between the smallest and
+// the largest coordinate; that leaves little to repair. Does nothing where the coordinates are too far apart.
+constexpr size_t radix_pays_from = 400;
+void deal_into_drawers(Array<uint64_t>& keys, Array<uint64_t>& swap) {
+    constexpr int drawers = 256;
+    size_t n = keys.size();
+    uint64_t least = keys[0], most = keys[0];
+    for (uint64_t key : keys) {
+        least = key < least ? key : least;
+        most = key > most ? key : most;
+    }
+    float from = float_of(static_cast<uint32_t>(least >> 32)), to = float_of(static_cast<uint32_t>(most >> 32));
+    float scale = static_cast<float>(drawers - 1) / (to - from);
+    if (!(scale > 0 && scale < infinity)) return;
+    // Rounds monotonically, and never above the last drawer: (to - from) * scale is drawers - 1 within rounding.
+    auto drawer = [&](uint64_t key) {
+        int d = static_cast<int>((float_of(static_cast<uint32_t>(key >> 32)) - from) * scale);
+        return d < drawers ? d : drawers - 1;
+    };
+    uint16_t place[drawers] = {};
+    for (uint64_t key : keys) ++place[drawer(key)];
+    uint16_t begin = 0;
+    for (uint16_t& p : place) begin = static_cast<uint16_t>(begin + std::exchange(p, begin));
+    swap.resize_unset(n);
+    for (uint64_t key : keys) swap[place[drawer(key)]++] = key;
+    keys.swap(swap);
+}
+
+}  // namespace
+
 void IntervalOrder::repair_or_sort() {
-    constexpr size_t few = 24;  // insertion beats any other sort
-    size_t n = keys_.size();
-    if (n > few) {
-        // Insertion takes time for every box passed. A sequence of which one key in eight is smaller than the one
-        // before is not worth it; nor is one in which a few keys pass thousands, which is only seen while at it.
-        size_t descents = 0;
-        for (size_t i = 1; i < n; ++i) descents += keys_[i] < keys_[i - 1];
-        if (descents == 0) return;
-        if (descents > n / 8) return sort_keys(keys_, swap_);
+    size_t n = keys_.size(), descents = 0;
+    for (size_t i = 1; i < n; ++i) descents += keys_[i] < keys_[i - 1];
+    if (descents == 0) return;
+    if (n <= handful) return sort_handful(keys_, swap_);
+    // Insertion takes time for every box passed. A sequence of which one key in eight is smaller than the one before is
+    // not worth it; nor is one in which a few keys pass thousands, which is only seen while at it.
+    if (descents > n / 8) {
+        if (n >= radix_pays_from) return sort_keys(keys_, swap_);
+        deal_into_drawers(keys_, swap_);
     }
     size_t passed = 0;
     for (size_t i = 1; i < n; ++i) {
@@ -20,7 +74,7 @@ void IntervalOrder::repair_or_sort() {
         for (; at > 0 && keys_[at - 1] > key; --at) keys_[at] = keys_[at - 1];
         keys_[at] = key;
         passed += i - at;
-        if (passed > 8 * n && n > few) return sort_keys(keys_, swap_);
+        if (passed > 8 * n) return sort_keys(keys_, swap_);
     }
 }
 
