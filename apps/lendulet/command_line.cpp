@@ -55,8 +55,9 @@ void add_run_options(CLI::App& command, RunOptions& options, RawOptions& raw) {
     command.add_option("--threads", options.world.workers, "threads, 1 to 64 (default 1)")->type_name("N");
     command.add_option("--solver-steps", options.world.solver_steps, "substeps of a step, 1 to 64 (default 8)")
         ->type_name("N");
-    command.add_option("--broad-phase", raw.broad_phase,
-                       "all-pairs, sweep-1, sweep-3, rtree-quadratic, rtree-star, rtree-str or rtree-omt")
+    command
+        .add_option("--broad-phase", raw.broad_phase,
+                    "all-pairs, sweep-1, sweep-3, rtree-quadratic, rtree-star, rtree-str or rtree-omt")
         ->type_name("NAME");
     command.add_option("--simplex", raw.simplex, "barycentric or half-space")->type_name("NAME");
     command.add_option("--integrator", raw.integrator, "momentum, explicit-euler, symplectic-euler or runge-kutta-4")
