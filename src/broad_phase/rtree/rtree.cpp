@@ -7,10 +7,9 @@ namespace lendulet {
 namespace {
 
 constexpr int few_boxes = 32;  // packed as they come
-// A tree that is changed box by box ends up with more overlap than one that is built, so it is built anew after this
-// many changes for each box, which keeps the surface of its nodes within 1.5 times that of a new one (measured by
-// tests/broad_phase/operations_test.cpp). Reinsertion keeps an R*-tree good by itself; what tiles do better than
-// insertion is lost soonest.
+// A tree that is changed box by box may end up with more overlap than one that is built, so it is built anew after this
+// many changes for each box. Reinsertion keeps an R*-tree good by itself; what tiles do better than insertion is lost
+// soonest.
 template <RtreePolicy policy>
 constexpr int changes_before_rebuild = policy == RtreePolicy::star        ? 8
                                        : policy == RtreePolicy::quadratic ? 2
