@@ -8,10 +8,11 @@
 // A body is looked at only where some point of it moved farther than its shallowest core is deep. Where its core is
 // found to meet something, the whole shape's time of impact with that is taken, or the core's where the shapes
 // overlapped to begin with; the body is put where it was then, as the other body carried it on to the end of the step.
-// Momenta are left alone: the next step finds the contact and solves it as every other.
+// Momenta are left alone (but see keep_energy): the next step finds the contact and solves it as every other.
 #include "world/continuous.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "collision/query/cast.h"
 #include "world/world_data.h"
@@ -100,7 +101,9 @@ void meet(const WorldData& world, uint32_t mine, const BodyPath& path, uint32_t 
     CastHit deep, first;
     double limit = minimum(impact.fraction, 1.0);
     if (!cast_shapes(a, motion_a, inner_core(b).geometry, motion_b, limit, deep, true)) return;
-    bool touching = !cast_shapes(a, motion_a, b, motion_b, deep.fraction, first) || first.overlapping;
+    // A shape that lay against the other to begin with is left to the solver until its core is about to pass.
+    constexpr double at_once = 1e-3;
+    bool touching = !cast_shapes(a, motion_a, b, motion_b, deep.fraction, first) || first.fraction < at_once;
     impact.offer(touching ? deep.fraction : first.fraction, mine, other);
 }
 
@@ -130,6 +133,25 @@ Impact first_impact(const WorldData& world, uint32_t body, const BodyPath& path,
     return impact;
 }
 
+// A body that is put from one orientation of its path to another keeps its angular momentum. The path is an even turn,
+// the true motion need not be: a slender body may have many times its energy there. It keeps that too where it is
+// turned by the little that the path is off, so that L lies in the body as it did; otherwise L is cut to the energy.
+void keep_energy(BodyStore& bodies, uint32_t body, Quat from) {
+    Vec3& L = bodies.momenta[body].L;
+    Quat& pose = bodies.pose[body].orientation;
+    Vec3 direction = normalize(L), in_body = rotate(pose, rotate_inverse(from, direction));
+    if (dot(in_body, direction) > 0.995f) {
+        pose = normalize(rotation_between(in_body, direction) * pose);
+        return;
+    }
+    const Quat to = pose;
+    pose = from;
+    float before = dot(L, bodies.angular_velocity(body));
+    pose = to;
+    float after = dot(L, bodies.angular_velocity(body));
+    if (after > before) L = square_root(maximum(before, 0.0f) / after) * L;
+}
+
 // Puts the body where it was at the impact, carried on by what it met.
 void stop(WorldData& world, uint32_t body, const BodyPath& path, const Impact& impact, float dt) {
     BodyPath carrier = path_of(world, world.colliders.info[impact.other].body, dt);
@@ -143,6 +165,7 @@ void stop(WorldData& world, uint32_t body, const BodyPath& path, const Impact& i
         pose.orientation = normalize(carrier.end.orientation * conjugate(carrier_then.orientation) * then.orientation);
     }
     world.bodies.momenta[body].x_low = {};
+    keep_energy(world.bodies, body, path.end.orientation);
     BodyInfo& info = world.bodies.info[body];
     info.stopped = true;
     world.continuous.fraction[static_cast<size_t>(info.solver_index - reserved_bodies)] *=
@@ -184,6 +207,57 @@ void find_suspects(WorldData& world, float dt) {
     }
 }
 
+// --- energy
+
+float kinetic_energy(const BodyMass& mass, Quat orientation, Vec3 v, Vec3 w) {
+    Vec3 spin = rotate_inverse(orientation, w);
+    return 0.5f * (mass.mass * dot(v, v) + dot(multiply(mass.inertia, spin), spin));
+}
+
+// Contacts of a body that turns by radians within a substep are rough: their points go round before they are solved.
+// Against things that do not move such a body must not gain energy, and is slowed where it would.
+void limit_energy(WorldData& world, uint32_t body, const BodyPath& path) {
+    BodyStore& bodies = world.bodies;
+    const BodyMass& mass = bodies.mass[body];
+    const BodyStart& start = world.solver_bodies.start[static_cast<size_t>(bodies.info[body].solver_index)];
+    BodyMomenta& m = bodies.momenta[body];
+    const float* a = world.solver_bodies.motion[static_cast<size_t>(bodies.info[body].solver_index)].acceleration;
+    Vec3 force = mass.mass * Vec3{a[0], a[1], a[2]};
+    float allowed = kinetic_energy(mass, path.start.orientation, {start.v[0], start.v[1], start.v[2]},
+                                   {start.w[0], start.w[1], start.w[2]}) +
+                    maximum(0.0f, dot(force, path.end.position - path.start.position));
+    float now =
+        kinetic_energy(mass, bodies.pose[body].orientation, bodies.velocity(body), bodies.angular_velocity(body));
+    if (!(now > allowed)) return;
+    float scale = square_root(allowed / now);
+    m.p = scale * m.p, m.p_low = {}, m.L = scale * m.L;
+}
+
+// For the suspects that turned far, touch something and touch nothing that moves.
+void limit_energies(WorldData& world, float dt) {
+    ContinuousData& c = world.continuous;
+    bool any = false;
+    for (uint32_t i : c.suspects) {
+        bool far = dt * length(world.bodies.angular_velocity(world.awake[i])) > most_foreseen_turn;
+        c.is_suspect[i] = far ? 2 : 1;
+        any = any || far;
+    }
+    if (!any) return;
+    for (uint32_t r : world.active) {
+        const ContactRecord& record = world.records[r];
+        for (auto [mine, other] : {std::pair{record.body_a, record.body_b}, std::pair{record.body_b, record.body_a}})
+            if (mine >= reserved_bodies && other >= reserved_bodies)
+                c.is_suspect[static_cast<size_t>(mine - reserved_bodies)] = 1;
+    }
+    for (uint32_t i : c.suspects) {
+        uint32_t body = world.awake[i];
+        const BodyMotion& motion = world.solver_bodies.motion[i + reserved_bodies];
+        bool driven = motion.torque[0] != 0.0f || motion.torque[1] != 0.0f || motion.torque[2] != 0.0f;
+        bool left_alone = motion.free > 0.0f || motion.joints > 0.0f || driven;
+        if (c.is_suspect[i] == 2 && !left_alone) limit_energy(world, body, path_of(world, body, dt));
+    }
+}
+
 }  // namespace
 
 void remember_poses(WorldData& world) {
@@ -217,6 +291,7 @@ void stop_at_impacts(WorldData& world, float dt) {
         });
         if (impact.fraction <= 1.0) stop(world, body, path, impact, dt);
     }
+    limit_energies(world, dt);
     for (uint32_t i : c.suspects) world.statistics.stopped_bodies += world.bodies.info[world.awake[i]].stopped;
 }
 
