@@ -45,7 +45,9 @@ void set_frame(WorldData& world, uint32_t slot, float turn) {
     f.near = minimum(contact_margin, 0.25f * info.radius);
     // Of what never turns no point moves, however far out.
     f.reach = body.type == BodyType::fixed ? 0.0f : minimum(length(place.arm) + info.radius, 1e30f);
-    f.turning = minimum(turn, 2.0f) * f.reach;
+    // Where a body turns that far, points found now say nothing of where it will touch: stop_at_impacts() does.
+    bool foreseen = turn <= most_foreseen_turn || !world.config.continuous;
+    f.turning = foreseen ? minimum(turn, 2.0f) * f.reach : 0.0f;
     f.half[0] = geometry.size.x, f.half[1] = geometry.size.y, f.half[2] = geometry.size.z;
     f.radius = info.radius;
 }
