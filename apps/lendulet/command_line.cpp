@@ -96,19 +96,19 @@ void finish_run_options(const CLI::App& command, const RawOptions& raw, RunOptio
 
 void add_broad_phase_options(CLI::App& command, bench::BroadPhaseOptions& options) {
     command.add_option("--sizes", options.sizes, "numbers of boxes (default 10 to 100000, uniform to 1000000)")
-        ->type_name("N,N,…");
+        ->type_name("N,N,...");
     command.add_option("--distributions", options.distributions, "uniform, clustered, ground, one-huge (default all)")
-        ->type_name("NAME,…");
-    command.add_option("--modes", options.modes, "rebuild, split, refit, query (default all)")->type_name("NAME,…");
-    command.add_option("--structures", options.structures, "broad phases and peers (default all)")->type_name("NAME,…");
+        ->type_name("NAME,...");
+    command.add_option("--modes", options.modes, "rebuild, split, refit, query (default all)")->type_name("NAME,...");
+    command.add_option("--structures", options.structures, "broad phases and peers (default all)")->type_name("NAME,...");
     command.add_option("--repeats", options.repeats, "samples of each structure (default 15)")->type_name("N");
     command.add_option("--csv", options.csv, "write the results as CSV")->type_name("FILE");
     command.add_option("--svg", options.svg, "draw the results as a chart")->type_name("FILE");
 }
 
 void add_scene_options(CLI::App& command, bench::SceneOptions& options) {
-    command.add_option("--scenes", options.scenes, "built-in scenes (default: 22 of them)")->type_name("NAME,…");
-    command.add_option("--threads", options.threads, "thread counts, 1 to 64 (default 1)")->type_name("N,…");
+    command.add_option("--scenes", options.scenes, "built-in scenes (default: 22 of them)")->type_name("NAME,...");
+    command.add_option("--threads", options.threads, "thread counts, 1 to 64 (default 1)")->type_name("N,...");
     command.add_option("--steps", options.steps, "measured steps (default: what each scene is meant for)")
         ->type_name("N")
         ->check(CLI::PositiveNumber);

@@ -1,5 +1,5 @@
 // Boost.Geometry's R-tree (https://www.boost.org/libs/geometry, 1.74 in Debian 12): quadratic and R* by insertion, and
-// bulk-loaded ("packing"). Sixteen children a node, the best of 8, 16 and 32 at 10 000 boxes for all three.
+// bulk-loaded ("packing"), sixteen children a node.
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
 #include <boost/iterator/function_output_iterator.hpp>
