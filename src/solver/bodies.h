@@ -48,12 +48,12 @@ struct alignas(64) BodyMotion {
     float linear_loss;         // 1 - exp(-damping h)
     float inverse_inertia[3];  // principal
     float angular_loss;
-    float angular_momentum[3];  // L, world axes
-    float anisotropy;           // largest over smallest principal moment; 1: turns about a fixed axis
-    float acceleration[3];      // gravity and applied forces over the substep, damping included
-    float free;                 // 1: no constraint acts on this body in this step
-    float torque[3];            // applied, world axes, damping included
-    float joints;               // 1: has joints; 2: and its group touches nothing: a split kick. Set by the solver
+    float angular_momentum[3];   // L, world axes
+    float anisotropy;            // largest over smallest principal moment; 1: turns about a fixed axis
+    float acceleration[3];       // gravity and applied forces over the substep, damping included
+    float free;                  // 1: no constraint acts on this body in this step
+    float torque[3];             // applied, world axes, damping included
+    float joints;                // 1: has joints; 2: and its group touches nothing: a split kick. Set by the solver
     float change_v[3], unused1;  // how the last substep changed velocity and L: the acceleration the drift expects
     float change_L[3], unused2;
 };

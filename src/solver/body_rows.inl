@@ -59,8 +59,7 @@ void begin_bodies(SolverBodies& bodies, int begin, int end) {
         Consecutive<W> c(i);
         BlockLanes<W> x(bodies, i);
         F m[32];
-        for (int k = 0; k < 32; k += 8)
-            gather8<W>(floats_of(bodies.motion.data()), c.index, stride, k, m + k);
+        for (int k = 0; k < 32; k += 8) gather8<W>(floats_of(bodies.motion.data()), c.index, stride, k, m + k);
         BodyBlock& b = x.block;
         for (int k = 0; k < 4; ++k) x.put(b.q0[k], m[k]);
         for (int k = 0; k < 3; ++k) {
@@ -107,10 +106,10 @@ LENDULET_FORCE_INLINE QuatT<F> normalized(QuatT<F> q) {
 
 inline constexpr int max_turn_parts = 32;
 
-// Turns dq q0 over h at constant L. The fixed point of the midpoint rule contracts by h |w| anisotropy / 2 an iteration,
-// so fast and slender bodies are turned in parts, and slow ones need fewer than the four iterations: as many as leave
-// an error below 1e-7 rad. Kinematic lanes (no inertia) turn with their given w. What a lane does never depends on its
-// neighbours; only work that no lane of a block asks for is left out.
+// Turns dq q0 over h at constant L. The fixed point of the midpoint rule contracts by h |w| anisotropy / 2 an
+// iteration, so fast and slender bodies are turned in parts, and slow ones need fewer than the four iterations: as many
+// as leave an error below 1e-7 rad. Kinematic lanes (no inertia) turn with their given w. What a lane does never
+// depends on its neighbours; only work that no lane of a block asks for is left out.
 template <int W>
 LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float, W>> dq, QuatT<Wide<float, W>> q0,
                                                                Vec3T<Wide<float, W>> L, Vec3T<Wide<float, W>> inverse,
@@ -122,7 +121,7 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
     F wish = splat<F>(2.0f * h) * square_root(dot(w, w)) * anisotropy;
     F iterations = select(wish > splat<F>(0.01f), select(wish > splat<F>(0.05f), four, splat<F>(2.0f)), one);
     iterations = select(anisotropy <= one, zero, iterations);  // about a fixed axis L gives the velocity at once
-    F parts = one;  // smallest power of two above the wish
+    F parts = one;                                             // smallest power of two above the wish
     if (mask_bits(wish > one))
         for (int i = 1; i < max_turn_parts; i *= 2) parts = select(wish > parts, parts + parts, parts);
     F step = splat<F>(h) / parts;

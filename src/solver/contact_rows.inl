@@ -10,14 +10,14 @@
 // point of a swept surface (ball, capsule, side of a cylinder) does not turn with its body, only its core point does.
 
 //
-// Rows work on changes of velocity since the start of the step. What the velocities then contribute is a constant of the
-// row but for the arms' motion, so it is kept in the row and not gathered in every pass.
+// Rows work on changes of velocity since the start of the step. What the velocities then contribute is a constant of
+// the row but for the arms' motion, so it is kept in the row and not gathered in every pass.
 
 // Members that only rows of several points have.
 template <class F, int P>
 struct PatchTurn {
-    Vec3T<F> start_spin;  // relative angular velocity at the start of the step
-    F shift[2];           // the separations' change per u, per v
+    Vec3T<F> start_spin;         // relative angular velocity at the start of the step
+    F shift[2];                  // the separations' change per u, per v
     F coupling[P == 4 ? 6 : 1];  // n_i M^-1 n_j: 10 20 21 30 31 32
 };
 template <class F>
@@ -49,16 +49,16 @@ struct alignas(64) ContactRow {
     using F = Wide<float, W>;
     int32_t a[W], b[W];  // eight times the body's index: the place of its inertia in floats, half that of its state
     // Read by both passes; where a line says so, written by relax for the solve of the next substep.
-    Vec3T<F> n, t1;           // normal, first tangent; the second is n x t1
+    Vec3T<F> n, t1;             // normal, first tangent; the second is n x t1
     Vec3T<F> lever_a, lever_b;  // arm x n; by relax
-    F start_approach;         // relative normal velocity of the centre at the start of the step, with these arms; by relax
-    F shift;                  // the separations' change since the start of the step, at the centre; by relax
-    F push_speed;             // fastest that overlap is undone
-    F bounce_speed;           // -1, or hugely negative where e = 0: times a speed, the approach that only impacts handle
+    F start_approach;  // relative normal velocity of the centre at the start of the step, with these arms; by relax
+    F shift;           // the separations' change since the start of the step, at the centre; by relax
+    F push_speed;      // fastest that overlap is undone
+    F bounce_speed;    // -1, or hugely negative where e = 0: times a speed, the approach that only impacts handle
     PatchPoint<F, P> p[P];
     [[no_unique_address]] PatchTurn<F, P> turn;
     // Read by relax alone.
-    Vec3T<F> ra, rb;      // arms of the centre at the start of the step
+    Vec3T<F> ra, rb;  // arms of the centre at the start of the step
     F follow, radius_a, radius_b;
     Vec3T<F> start_slip;  // relative velocity of the centre at the start of the step
     Vec3T<F> start_turn;  // angular velocity then of the bodies whose arms move, weighted by how much they do
@@ -287,7 +287,8 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     c.shift = zero;
     if constexpr (P > 1) c.turn.shift[0] = c.turn.shift[1] = zero;
     prepare_start<W, P>(c, bodies, body_a, body_b);
-    WideVelocity<F> A = load_velocity_at<W>(bodies.state.data(), c.a), B = load_velocity_at<W>(bodies.state.data(), c.b);
+    WideVelocity<F> A = load_velocity_at<W>(bodies.state.data(), c.a),
+                    B = load_velocity_at<W>(bodies.state.data(), c.b);
     SymMat3T<F> IA = load_inverse_inertia_at<W>(bodies.inertia.data(), c.a);
     SymMat3T<F> IB = load_inverse_inertia_at<W>(bodies.inertia.data(), c.b);
     F inverse_masses = A.inverse_mass + B.inverse_mass;

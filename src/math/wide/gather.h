@@ -173,9 +173,7 @@ LENDULET_FORCE_INLINE void gather8(const float* base, const int32_t* index, int 
                                    Wide<float, W> out[8]) {
     using namespace detail;
     if constexpr (W == 16 && W <= native_lanes) {
-        auto half = [&](int i) {
-            return load_wide<Float8>(base + static_cast<ptrdiff_t>(index[i]) * stride + offset);
-        };
+        auto half = [&](int i) { return load_wide<Float8>(base + static_cast<ptrdiff_t>(index[i]) * stride + offset); };
         Float16 low[4], high[4];
         for (int k = 0; k < 4; ++k) {
             low[k] = join(half(k), half(k + 4));
