@@ -100,7 +100,8 @@ void add_broad_phase_options(CLI::App& command, bench::BroadPhaseOptions& option
     command.add_option("--distributions", options.distributions, "uniform, clustered, ground, one-huge (default all)")
         ->type_name("NAME,...");
     command.add_option("--modes", options.modes, "rebuild, split, refit, query (default all)")->type_name("NAME,...");
-    command.add_option("--structures", options.structures, "broad phases and peers (default all)")->type_name("NAME,...");
+    command.add_option("--structures", options.structures, "broad phases and peers (default all)")
+        ->type_name("NAME,...");
     command.add_option("--repeats", options.repeats, "samples of each structure (default 15)")->type_name("N");
     command.add_option("--csv", options.csv, "write the results as CSV")->type_name("FILE");
     command.add_option("--svg", options.svg, "draw the results as a chart")->type_name("FILE");

@@ -45,7 +45,7 @@ TEST_P(Determinism, BroadPhases) {
     uint64_t expected = hash_after(GetParam(), {});
     for (BroadPhaseType type :
          {BroadPhaseType::all_pairs, BroadPhaseType::sweep_1, BroadPhaseType::sweep_3, BroadPhaseType::rtree_quadratic,
-          BroadPhaseType::rtree_star, BroadPhaseType::rtree_str, BroadPhaseType::rtree_omt})
+          BroadPhaseType::rtree_star, BroadPhaseType::rtree_str, BroadPhaseType::rtree_omt, BroadPhaseType::wide_tree})
         same_as(
             expected, [&](WorldBuilder& builder) { builder.broad_phase(type).workers(2); }, std::string(name_of(type)));
 }

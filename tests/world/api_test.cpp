@@ -218,7 +218,7 @@ TEST(Time, LongStepsAreCutIntoEqualParts) {
 TEST(Names, OfEveryChoiceLeadBackToIt) {
     for (BroadPhaseType t :
          {BroadPhaseType::all_pairs, BroadPhaseType::sweep_1, BroadPhaseType::sweep_3, BroadPhaseType::rtree_quadratic,
-          BroadPhaseType::rtree_star, BroadPhaseType::rtree_str, BroadPhaseType::rtree_omt})
+          BroadPhaseType::rtree_star, BroadPhaseType::rtree_str, BroadPhaseType::rtree_omt, BroadPhaseType::wide_tree})
         EXPECT_EQ(broad_phase_from_name(name_of(t)).value(), t);
     for (SimplexSolver s : {SimplexSolver::barycentric, SimplexSolver::half_space})
         EXPECT_EQ(simplex_from_name(name_of(s)).value(), s);

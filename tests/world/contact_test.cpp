@@ -206,7 +206,8 @@ TEST_P(Queries, EveryColliderHasALeafBoxAndEveryBoxHoldsItsBody) {
 INSTANTIATE_TEST_SUITE_P(Structures, Queries,
                          ::testing::Values(BroadPhaseType::all_pairs, BroadPhaseType::sweep_1, BroadPhaseType::sweep_3,
                                            BroadPhaseType::rtree_quadratic, BroadPhaseType::rtree_star,
-                                           BroadPhaseType::rtree_str, BroadPhaseType::rtree_omt));
+                                           BroadPhaseType::rtree_str, BroadPhaseType::rtree_omt,
+                                           BroadPhaseType::wide_tree));
 
 }  // namespace
 }  // namespace lendulet::testing

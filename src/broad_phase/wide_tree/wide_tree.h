@@ -10,11 +10,11 @@
 // of 32 or 64 bytes.
 //
 // How far from what the machine can do (10 000 boxes, one Zen 5 core at about 4 GHz, eight lanes, measured): at two
-// comparisons a cycle the tests alone would take 5 ns a box; the search takes about 14 ns, the rest being the packing of
-// the boxes that reach into a neighbour, the ends of loops and the writing of pairs. A build takes about 9 ns: it reads
-// the 32 bytes of a box twice and the 16 of its centre seven times. Both together are 23 ns a box. A frame in which 5 %
-// of the boxes move costs 3.6 ns a box, 70 ns for each that moves: 16 % of building and searching anew at 10 000 boxes,
-// 5 to 8 % at 100 000, where the order of the array costs a build cache misses.
+// comparisons a cycle the tests alone would take 5 ns a box; the search takes about 14 ns, the rest being the packing
+// of the boxes that reach into a neighbour, the ends of loops and the writing of pairs. A build takes about 9 ns: it
+// reads the 32 bytes of a box twice and the 16 of its centre seven times. Both together are 23 ns a box. A frame in
+// which 5 % of the boxes move costs 3.6 ns a box, 70 ns for each that moves: 16 % of building and searching anew at 10
+// 000 boxes, 5 to 8 % at 100 000, where the order of the array costs a build cache misses.
 #pragma once
 
 #include "base/memory.h"
