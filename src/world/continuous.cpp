@@ -32,11 +32,16 @@ struct BodyPath {
 
 bool is_still(const WorldData& world, uint32_t body) { return world.bodies.info[body].solver_index < reserved_bodies; }
 
+// Where the arrays of ContinuousData hold a packed body.
+size_t place_of(const WorldData& world, uint32_t body) {
+    return static_cast<size_t>(world.bodies.info[body].solver_index - reserved_bodies);
+}
+
 BodyPath path_of(const WorldData& world, uint32_t body, float dt) {
     const BodyStore& bodies = world.bodies;
     BodyPath path{bodies.pose[body], bodies.pose[body]};
     if (is_still(world, body)) return path;
-    auto place = static_cast<size_t>(bodies.info[body].solver_index - reserved_bodies);
+    const size_t place = place_of(world, body);
     path.start = world.continuous.start[place];
     Quat turn = path.end.orientation * conjugate(path.start.orientation);
     const float* before = world.solver_bodies.start[place + reserved_bodies].w;
@@ -168,8 +173,7 @@ void stop(WorldData& world, uint32_t body, const BodyPath& path, const Impact& i
     keep_energy(world.bodies, body, path.end.orientation);
     BodyInfo& info = world.bodies.info[body];
     info.stopped = true;
-    world.continuous.fraction[static_cast<size_t>(info.solver_index - reserved_bodies)] *=
-        static_cast<float>(impact.fraction);
+    world.continuous.fraction[place_of(world, body)] *= static_cast<float>(impact.fraction);
 }
 
 // Bodies in the way of kinematic ones that moved far.
@@ -179,9 +183,9 @@ void suspect_swept(WorldData& world, uint32_t kinematic, const BodyPath& path, A
     near.clear();
     world.broad_phase.query_box(lower, upper, near);
     for (uint32_t c : near) {
-        const BodyInfo& info = world.bodies.info[world.colliders.info[c].body];
-        if (info.type == BodyType::dynamic && info.solver_index >= reserved_bodies)
-            world.continuous.is_suspect[static_cast<size_t>(info.solver_index - reserved_bodies)] = 1;
+        uint32_t body = world.colliders.info[c].body;
+        if (world.bodies.info[body].type == BodyType::dynamic && !is_still(world, body))
+            world.continuous.is_suspect[place_of(world, body)] = 1;
     }
 }
 
@@ -189,21 +193,21 @@ void find_suspects(WorldData& world, float dt) {
     ContinuousData& c = world.continuous;
     c.suspects.clear();
     c.bullets.clear();
-    c.is_suspect.assign(world.awake.size(), 0);
-    c.fraction.assign(world.awake.size(), 1.0f);
-    for (size_t i = 0; i < world.awake.size(); ++i) {
-        BodyInfo& info = world.bodies.info[world.awake[i]];
+    c.is_suspect.assign(c.start.size(), 0);
+    c.fraction.assign(c.start.size(), 1.0f);
+    for (uint32_t body : world.awake) {
+        BodyInfo& info = world.bodies.info[body];
         info.stopped = false;
-        BodyPath path = path_of(world, world.awake[i], dt);
+        BodyPath path = path_of(world, body, dt);
         if (info.contained || !(reach_of(path, info.radius) > info.depth)) continue;
-        if (info.type == BodyType::kinematic) suspect_swept(world, world.awake[i], path, c.near[0]);
-        else c.is_suspect[i] = 1;
+        if (info.type == BodyType::kinematic) suspect_swept(world, body, path, c.near[0]);
+        else c.is_suspect[place_of(world, body)] = 1;
     }
-    for (size_t i = 0; i < world.awake.size(); ++i) {
-        const BodyInfo& info = world.bodies.info[world.awake[i]];
-        if (!c.is_suspect[i] || info.contained) continue;
-        c.suspects.push_back(static_cast<uint32_t>(i));
-        if (info.bullet) c.bullets.push_back(static_cast<uint32_t>(i));
+    for (uint32_t body : world.awake) {
+        const BodyInfo& info = world.bodies.info[body];
+        if (!c.is_suspect[place_of(world, body)] || info.contained) continue;
+        c.suspects.push_back(body);
+        if (info.bullet) c.bullets.push_back(body);
     }
 }
 
@@ -237,9 +241,9 @@ void limit_energy(WorldData& world, uint32_t body, const BodyPath& path) {
 void limit_energies(WorldData& world, float dt) {
     ContinuousData& c = world.continuous;
     bool any = false;
-    for (uint32_t i : c.suspects) {
-        bool far = dt * length(world.bodies.angular_velocity(world.awake[i])) > most_foreseen_turn;
-        c.is_suspect[i] = far ? 2 : 1;
+    for (uint32_t body : c.suspects) {
+        bool far = dt * length(world.bodies.angular_velocity(body)) > most_foreseen_turn;
+        c.is_suspect[place_of(world, body)] = far ? 2 : 1;
         any = any || far;
     }
     if (!any) return;
@@ -249,12 +253,12 @@ void limit_energies(WorldData& world, float dt) {
             if (mine >= reserved_bodies && other >= reserved_bodies)
                 c.is_suspect[static_cast<size_t>(mine - reserved_bodies)] = 1;
     }
-    for (uint32_t i : c.suspects) {
-        uint32_t body = world.awake[i];
-        const BodyMotion& motion = world.solver_bodies.motion[i + reserved_bodies];
+    for (uint32_t body : c.suspects) {
+        const size_t place = place_of(world, body);
+        const BodyMotion& motion = world.solver_bodies.motion[place + reserved_bodies];
         bool driven = motion.torque[0] != 0.0f || motion.torque[1] != 0.0f || motion.torque[2] != 0.0f;
         bool left_alone = motion.free > 0.0f || motion.joints > 0.0f || driven;
-        if (c.is_suspect[i] == 2 && !left_alone) limit_energy(world, body, path_of(world, body, dt));
+        if (c.is_suspect[place] == 2 && !left_alone) limit_energy(world, body, path_of(world, body, dt));
     }
 }
 
@@ -262,8 +266,8 @@ void limit_energies(WorldData& world, float dt) {
 
 void remember_poses(WorldData& world) {
     if (!world.config.continuous) return;
-    world.continuous.start.resize_unset(world.awake.size());
-    for (size_t i = 0; i < world.awake.size(); ++i) world.continuous.start[i] = world.bodies.pose[world.awake[i]];
+    world.continuous.start.resize_unset(static_cast<size_t>(world.solver_bodies.count - reserved_bodies));
+    for (uint32_t body : world.awake) world.continuous.start[place_of(world, body)] = world.bodies.pose[body];
 }
 
 void stop_at_impacts(WorldData& world, float dt) {
@@ -274,7 +278,7 @@ void stop_at_impacts(WorldData& world, float dt) {
     // Against what nothing can push: each body for itself.
     world.tasks.for_each(c.suspects.count(), suspects_per_task, [&](int begin, int end, int worker) {
         for (int i = begin; i < end; ++i) {
-            uint32_t body = world.awake[c.suspects[static_cast<size_t>(i)]];
+            uint32_t body = c.suspects[static_cast<size_t>(i)];
             BodyPath path = path_of(world, body, dt);
             Impact impact =
                 first_impact(world, body, path, dt, c.near[static_cast<size_t>(worker)],
@@ -283,8 +287,7 @@ void stop_at_impacts(WorldData& world, float dt) {
         }
     });
     // Bullets against other bodies as these now move, one after the other.
-    for (uint32_t i : c.bullets) {
-        uint32_t body = world.awake[i];
+    for (uint32_t body : c.bullets) {
         BodyPath path = path_of(world, body, dt);
         Impact impact = first_impact(world, body, path, dt, c.near[0], [&](uint32_t other) {
             return world.bodies.info[other].type == BodyType::dynamic;
@@ -292,7 +295,7 @@ void stop_at_impacts(WorldData& world, float dt) {
         if (impact.fraction <= 1.0) stop(world, body, path, impact, dt);
     }
     limit_energies(world, dt);
-    for (uint32_t i : c.suspects) world.statistics.stopped_bodies += world.bodies.info[world.awake[i]].stopped;
+    for (uint32_t body : c.suspects) world.statistics.stopped_bodies += world.bodies.info[body].stopped;
 }
 
 }  // namespace lendulet

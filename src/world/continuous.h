@@ -11,14 +11,15 @@
 namespace lendulet {
 
 struct ContinuousData {
-    Array<Pose> start;                  // of the awake bodies at the start of the step, in their order
-    Array<uint32_t> suspects, bullets;  // places in that order, ascending
+    Array<uint32_t> suspects, bullets;  // slots, in the order of awake bodies
+    // By place among the packed bodies: the pose at the start of the step, and the part of the step
+    Array<Pose> start;
     Array<uint8_t> is_suspect;
-    Array<float> fraction;              // of the step after which a body was stopped, 1 where it was not
+    Array<float> fraction;              // after which a body was stopped, 1 where it was not
     std::vector<Array<uint32_t>> near;  // by worker: colliders near a suspect
 
     ContinuousData(const Memory* memory, int workers)
-        : start(memory), suspects(memory), bullets(memory), is_suspect(memory), fraction(memory) {
+        : suspects(memory), bullets(memory), start(memory), is_suspect(memory), fraction(memory) {
         for (int i = 0; i < workers; ++i) near.emplace_back(memory);
     }
 };

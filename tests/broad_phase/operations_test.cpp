@@ -133,8 +133,9 @@ TEST_P(OperationsTest, AMillion) {
     }
     EXPECT_LE(broad_phase_.bytes(), bytes_early + bytes_early / 2);
     // Guttman's insertions are good or bad by chance, and those into tiles do not make tiles: they keep on average what
-    // the others keep each time.
-    bool always = GetParam() != BroadPhaseType::rtree_quadratic && GetParam() != BroadPhaseType::rtree_str;
+    // the others keep each time. The wide tree is built anew by what changes cost its searches, not by its surface.
+    bool always = GetParam() != BroadPhaseType::rtree_quadratic && GetParam() != BroadPhaseType::rtree_str &&
+                  GetParam() != BroadPhaseType::wide_tree;
     EXPECT_LE(always ? worst_cost_ : sum_of_costs_ / static_cast<float>(thousands), 1.5f);
     RecordProperty("worst_cost", std::to_string(worst_cost_));
     RecordProperty("mean_cost", std::to_string(sum_of_costs_ / static_cast<float>(thousands)));

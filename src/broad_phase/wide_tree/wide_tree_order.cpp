@@ -28,8 +28,8 @@ struct Buckets {
         return per_half <= FLT_MAX;
     }
     int of(float x) const {
-        int bucket = static_cast<int>((0.5f * x - lowest) * per_half);
-        return bucket < last ? bucket : last;
+        float place = (0.5f * x - lowest) * per_half;  // from 0 on, but for rounding
+        return place < static_cast<float>(last) ? place > 0.0f ? static_cast<int>(place) : 0 : last;
     }
 };
 
@@ -94,12 +94,12 @@ int WideTreeOrder::collect(const BroadBox* boxes, int count, Array<uint32_t>& un
         // Halved before adding: the sum of two large floats may overflow.
         Float4 half = splat<Float4>(0.5f);
         Float4 lower = load_bounds(boxes[i].lower), upper = load_bounds(boxes[i].upper);
-        float size = largest(upper - lower);
-        if (!(size <= FLT_MAX)) {
+        const Float4 edges = upper - lower;
+        if ((mask_bits(edges <= splat<Float4>(FLT_MAX)) & 7u) != 7u) {  // infinite, or NaN of two infinite sides
             unbounded.push_back(static_cast<uint32_t>(i));
             continue;
         }
-        int exponent = exponent_of(size);
+        int exponent = exponent_of(largest(edges));
         exponents += exponent;
         top = exponent > top ? exponent : top;
         Float4 centre = lower * half + upper * half;
