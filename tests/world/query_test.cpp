@@ -83,8 +83,8 @@ Ray random_ray(Random& random) {
 
 // Of one world or of two that were built alike, whose handles differ in the number of the world alone.
 bool same(const QueryHit& a, const QueryHit& b) {
-    return a.hit == b.hit && a.body.index == b.body.index && a.collider.index == b.collider.index && a.triangle == b.triangle &&
-           a.fraction == b.fraction && a.point == b.point && a.normal == b.normal &&
+    return a.hit == b.hit && a.body.index == b.body.index && a.collider.index == b.collider.index &&
+           a.triangle == b.triangle && a.fraction == b.fraction && a.point == b.point && a.normal == b.normal &&
            a.started_inside == b.started_inside && a.user_data == b.user_data && a.body_user_data == b.body_user_data;
 }
 
