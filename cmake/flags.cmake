@@ -8,7 +8,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC 12 warns of overlaps inside std::string that cannot be (its bug 105651).
     target_compile_options(lendulet_flags INTERFACE -Wno-restrict)
 elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-    target_compile_options(lendulet_flags INTERFACE -Wno-missing-braces -Wno-unused-const-variable)
+    # Masks of one lane are bools, and are combined by & as those of many lanes.
+    target_compile_options(lendulet_flags INTERFACE -Wno-missing-braces -Wno-unused-const-variable
+        -Wno-bitwise-instead-of-logical)
 endif()
 if(LENDULET_WARNINGS_ARE_ERRORS)
     target_compile_options(lendulet_flags INTERFACE -Werror)
