@@ -4,6 +4,9 @@
 //
 // Faces come first: clipping the shape's face by the triangle often proves that the triangle's normal is the direction
 // of the shortest way out; only edges that can touch need GJK and EPA.
+#include <bit>
+
+#include "collision/mesh_filter.h"
 #include "collision/mesh_manifolds.h"
 #include "collision/pair.h"
 #include "collision/triangle.h"
@@ -61,12 +64,25 @@ MeshQuery make_query(const CollidePair& pair, const CollideSettings& settings) {
             {}};
 }
 
-// Whether the triangle's own bounds meet those of the shape: leaves hold more than one.
-bool near(const MeshQuery& q, const Triangle& t) {
-    Vec3 lower = minimum(t.vertices[0], minimum(t.vertices[1], t.vertices[2]));
-    Vec3 upper = maximum(t.vertices[0], maximum(t.vertices[1], t.vertices[2]));
-    return lower.x <= q.upper.x && lower.y <= q.upper.y && lower.z <= q.upper.z && upper.x >= q.lower.x &&
-           upper.y >= q.lower.y && upper.z >= q.lower.z;
+// visit(triangle index, apart) for those that may come within `limit` of the core, in the order of the mesh.
+template <class Visit>
+void for_each_near(const MeshQuery& q, float limit, Visit&& visit) {
+    const MeshFilter filter(q.mesh, q.shape, q.turn, q.position, q.lower, q.upper, q.centre, limit, level * q.size);
+    uint32_t waiting[MeshFilter::lanes];
+    int count = 0;
+    auto flush = [&] {
+        MeshFilter::Result result = filter.test(waiting, count);
+        for (; result.live != 0; result.live &= result.live - 1) {
+            int i = std::countr_zero(result.live);
+            visit(waiting[i], (result.apart >> i & 1) != 0);
+        }
+        count = 0;
+    };
+    for_each_triangle(q.mesh, q.position + q.lower, q.position + q.upper, [&](uint32_t index) {
+        waiting[count++] = index;
+        if (count == MeshFilter::lanes) flush();
+    });
+    if (count > 0) flush();
 }
 
 void start(const Triangle& t, Vec3 normal, bool face, float radius, float follow, TriangleContact& out) {
@@ -202,17 +218,6 @@ ConvexDistance distance_to(const MeshQuery& q, const Triangle& t, float limit) {
     return distance({&flat_core, &q.shape, {{}, q.turn}}, cold, q.settings.simplex, limit);
 }
 
-// Whether the core lies beyond one of the triangle's sides by more than `limit`, so that it is farther away than that.
-// Most triangles near a shape are told by this, at a tenth of a distance query.
-bool beyond_side(const MeshQuery& q, const Triangle& t, float limit) {
-    for (int i = 0; i < 3; ++i) {
-        Vec3 out = normalize(out_across(t, i));
-        Vec3 inward = rotate_inverse(q.turn, -out);
-        if (-dot(inward, support_core(q.shape, inward)) - dot(out, t.vertices[i]) > limit) return true;
-    }
-    return false;
-}
-
 // Behind a closed surface's side, whose neighbour across one of these edges the shape's centre is in front of: the
 // neighbour pushes out, and pushing deeper in would be wrong.
 bool neighbour_pushes(const MeshQuery& q, const Triangle& t, uint8_t edges) {
@@ -273,7 +278,8 @@ void edge_contact(const MeshQuery& q, const Triangle& t, const ConvexDistance& n
     add_point(position, nearest.distance - radius, point_id(edge_feature(t.original, edges), 0), out);
 }
 
-void convex_triangle(MeshQuery& q, const Triangle& t, TriangleContact& out) {
+// `apart`: the core is known to be farther than the margin from the triangle itself, though not from its plane.
+void convex_triangle(MeshQuery& q, const Triangle& t, bool apart, TriangleContact& out) {
     look_at(q, t.normal);
     float limit = q.pair.margin + q.shape.rounding;
     float height = dot(t.normal, q.lowest - t.vertices[0]);
@@ -284,7 +290,7 @@ void convex_triangle(MeshQuery& q, const Triangle& t, TriangleContact& out) {
     // be across an edge.
     bool sure = t.touching == 0 && (height >= 0.0f || !t.from_behind || t.bent == 0);
     if (sure || is_shortest(q, t, clipped)) return face_contact(q, t, clipped, out);
-    if (beyond_side(q, t, limit)) return;
+    if (apart) return;
     ConvexDistance nearest = distance_to(q, t, limit);
     if (nearest.distance > limit) return;
     float lean = dot(nearest.normal, t.normal);
@@ -305,12 +311,11 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
     MeshQuery q = make_query(pair, settings);
     MeshManifolds manifolds(10.0f * level * q.size);
     bool ball = pair.b->kind == GeometryKind::point;
-    for_each_triangle(q.mesh, q.position + q.lower, q.position + q.upper, [&](uint32_t index) {
+    for_each_near(q, pair.margin + q.shape.rounding, [&](uint32_t index, bool apart) {
         Triangle t = make_triangle(q.mesh, index, q.position, q.centre);
-        if (!near(q, t)) return;
         TriangleContact contact;
         if (ball) sphere_triangle(q, t, contact);
-        else convex_triangle(q, t, contact);
+        else convex_triangle(q, t, apart, contact);
         manifolds.add(contact);
     });
     int count = manifolds.write(out, capacity < max_mesh_manifolds ? capacity : max_mesh_manifolds);
@@ -327,10 +332,9 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
 bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& settings) {
     MeshQuery q = make_query(pair, settings);
     bool touching = false;
-    for_each_triangle(q.mesh, q.position + q.lower, q.position + q.upper, [&](uint32_t index) {
-        if (touching) return;
+    for_each_near(q, q.shape.rounding, [&](uint32_t index, bool apart) {
+        if (touching || apart) return;
         Triangle t = make_triangle(q.mesh, index, q.position, q.centre);
-        if (!near(q, t)) return;
         float radius = q.shape.rounding;
         touching = pair.b->kind == GeometryKind::point ? length(nearest_on_triangle(t.vertices, {}).point) <= radius
                                                        : distance_to(q, t, radius).distance <= radius;

@@ -1,0 +1,40 @@
+// Which of the mesh triangles near a convex shape are worth looking at, four at a time: tests of separation along the
+// triangle's normal, its three sides and the shape's own axes. Never wrong about what it rejects, so that what it lets
+// through decides nothing but the time.
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/geometry.h"
+#include "geometry/mesh.h"
+
+namespace lendulet {
+
+class MeshFilter {
+public:
+    static constexpr int lanes = 4;
+
+    // The shape at `position` with `turn` from its axes to those of the mesh; [lower, upper] its bounds, margin
+    // included, and `centre` its centre, both relative to its position, mesh axes. Cores farther than `limit` from a
+    // triangle do not matter, give or take `slack`.
+    MeshFilter(const MeshData& mesh, const Geometry& shape, Quat turn, Vec3 position, Vec3 lower, Vec3 upper,
+               Vec3 centre, float limit, float slack);
+
+    struct Result {
+        uint32_t live = 0;   // bit i: triangle i may touch, or the shape is beyond its plane
+        uint32_t apart = 0;  // bit i: the core is farther than the limit from triangle i, though it crosses its plane
+    };
+    // `count` triangles, 1 to 4.
+    Result test(const uint32_t* triangles, int count) const;
+
+private:
+    const MeshData& mesh_;
+    const Geometry& shape_;
+    Mat3 to_shape_;                // rows: the shape's axes in those of the mesh
+    Vec3 position_, lower_, upper_;  // mesh frame
+    Vec3 centre_;                  // relative to the position, mesh axes
+    Vec3 box_lower_, box_upper_;   // of the core and the limit, the shape's axes
+    float limit_;
+};
+
+}  // namespace lendulet
