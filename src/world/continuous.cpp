@@ -62,6 +62,18 @@ float reach_of(const BodyPath& path, float radius) {
     return length(path.end.position - path.start.position) + minimum(absolute(path.angle), full_turn) * radius;
 }
 
+// The same from above, from what the solver has at hand and in a fraction of the time. A body that spun by less than
+// half a turn has turned by the angle between its orientations, which is at most pi times the sine of its half.
+float most_reach_of(const WorldData& world, uint32_t body, float dt) {
+    const auto index = static_cast<size_t>(world.bodies.info[body].solver_index);
+    const BodyState& state = world.solver_bodies.state[index];
+    const BodyStart& start = world.solver_bodies.start[index];
+    Vec3 spin = Vec3{start.w[0], start.w[1], start.w[2]} + 0.5f * Vec3{state.w[0], state.w[1], state.w[2]};
+    float sine = length(Vec3{state.dq[0], state.dq[1], state.dq[2]});
+    float angle = dt * length(spin) < 3.0f ? minimum(pi * sine, full_turn) : full_turn;
+    return 1.01f * (length(Vec3{state.dp[0], state.dp[1], state.dp[2]}) + angle * world.bodies.info[body].radius);
+}
+
 // The path of one of the body's shapes, relative to `origin`.
 Motion motion_of(const WorldData& world, uint32_t collider, const BodyPath& path, Position origin) {
     const Transform& local = world.colliders.local[collider];
@@ -198,8 +210,9 @@ void find_suspects(WorldData& world, float dt) {
     for (uint32_t body : world.awake) {
         BodyInfo& info = world.bodies.info[body];
         info.stopped = false;
+        if (info.contained || !(most_reach_of(world, body, dt) > info.depth)) continue;
         BodyPath path = path_of(world, body, dt);
-        if (info.contained || !(reach_of(path, info.radius) > info.depth)) continue;
+        if (!(reach_of(path, info.radius) > info.depth)) continue;
         if (info.type == BodyType::kinematic) suspect_swept(world, body, path, c.near[0]);
         else c.is_suspect[place_of(world, body)] = 1;
     }
