@@ -16,10 +16,14 @@ QuatT<double> unit_double(Quat q) {
 double badness(Tolerance tolerance, double measured, double exact) {
     if (!std::isfinite(measured) || !std::isfinite(exact)) return std::numeric_limits<double>::infinity();
     switch (tolerance.kind) {
-        case Tolerance::Kind::absolute: return std::fabs(measured - exact);
-        case Tolerance::Kind::relative: return std::fabs(measured / exact - 1.0);
-        case Tolerance::Kind::at_most: return measured - exact;
-        case Tolerance::Kind::at_least: return exact - measured;
+        case Tolerance::Kind::absolute:
+            return std::fabs(measured - exact);
+        case Tolerance::Kind::relative:
+            return std::fabs(measured / exact - 1.0);
+        case Tolerance::Kind::at_most:
+            return measured - exact;
+        case Tolerance::Kind::at_least:
+            return exact - measured;
     }
     return std::numeric_limits<double>::infinity();
 }

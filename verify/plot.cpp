@@ -80,25 +80,37 @@ std::string escaped(const std::string& raw) {
     std::string out;
     for (char c : raw) {
         switch (c) {
-            case '&': out += "&amp;"; break;
-            case '<': out += "&lt;"; break;
-            case '>': out += "&gt;"; break;
-            case '"': out += "&quot;"; break;
-            default: out += c;
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            default:
+                out += c;
         }
     }
     return out;
 }
 
 std::string plot_svg(const Curve& curve, int x, int y) {
-    std::string out = text("<g transform='translate(%.0f %.0f)' font-family='sans-serif' font-size='11' fill='#222'>", x, y);
+    std::string out =
+        text("<g transform='translate(%.0f %.0f)' font-family='sans-serif' font-size='11' fill='#222'>", x, y);
     out += text("<rect width='%.0f' height='%.0f' fill='white'/>", plot_width, plot_height);
-    out += text("<text x='%.0f' y='20' font-size='13'>", left) + escaped(curve.case_id + ": " + curve.title) + "</text>";
+    out +=
+        text("<text x='%.0f' y='20' font-size='13'>", left) + escaped(curve.case_id + ": " + curve.title) + "</text>";
     if (!curve.points.empty()) {
         Chart chart(curve);
         out += chart.axes();
         out += "<polyline fill='none' stroke='#c05010' stroke-width='1.6' points='";
-        for (const Curve::Point& point : curve.points) out += text("%.1f,%.1f ", chart.px(point.x), chart.py(point.exact));
+        for (const Curve::Point& point : curve.points)
+            out += text("%.1f,%.1f ", chart.px(point.x), chart.py(point.exact));
         out += "'/>";
         for (const Curve::Point& point : curve.points)
             if (std::isfinite(point.measured))
@@ -116,8 +128,9 @@ std::string curves_svg(const Report& report) {
     constexpr int columns = 2, space = 8;
     const int count = static_cast<int>(report.curves.size()), rows = (count + columns - 1) / columns;
     const int width = columns * (plot_width + space), height = std::max(rows, 1) * (plot_height + space);
-    std::string out = text("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %.0f %.0f' width='%.0f' height='%.0f'>\n",
-                           width, height, width, height);
+    std::string out =
+        text("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %.0f %.0f' width='%.0f' height='%.0f'>\n", width,
+             height, width, height);
     out += "<rect width='100%' height='100%' fill='white'/>\n";
     for (int i = 0; i < count; ++i)
         out += plot_svg(report.curves[static_cast<size_t>(i)], i % columns * (plot_width + space),

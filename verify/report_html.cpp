@@ -27,10 +27,11 @@ std::string number(double value) {
 std::string cell(double value) { return "<td class=\"n\">" + number(value) + "</td>"; }
 
 std::string table(const Report& report) {
-    std::string out =
-        "<table>\n<tr><th>case</th><th>quantity</th><th>measured</th><th>exact</th><th>error</th><th>tolerance</th>"
-        "<th></th></tr>\n",
-                last;
+    std::string
+        out =
+            "<table>\n<tr><th>case</th><th>quantity</th><th>measured</th><th>exact</th><th>error</th><th>tolerance</th>"
+            "<th></th></tr>\n",
+        last;
     for (const Row& row : report.rows) {
         std::string name = row.case_id == last ? "" : row.case_id + " " + std::string(title_of(row.case_id));
         last = row.case_id;
@@ -46,7 +47,8 @@ std::string table(const Report& report) {
 }  // namespace
 
 std::string report_html(const Report& report, Quality quality) {
-    std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>Lendület: accuracy</title>\n";
+    std::string out =
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>Lendület: accuracy</title>\n";
     out += std::string(style) + "</head>\n<body>\n<h1>Lendület: measured against exact</h1>\n<p>";
     out += quality == Quality::hq ? "Quality hq: steps of 1/240 s, 16 substeps. "
                                   : "Quality d60: steps of 1/60 s with the shipping defaults. ";

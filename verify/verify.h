@@ -1,8 +1,8 @@
 // Cases with closed forms: what the engine computes beside what mechanics says. `lendulet verify` prints them,
 // docs/accuracy.md holds a run of them, tests/physics asserts them; every case is written once, in cases/.
 //
-// A case is written in axes of its own (y up) and run in worlds that are turned and moved at random, since a result that
-// holds along the axes only is no result. The worst of them counts. Tolerances are part of the cases.
+// A case is written in axes of its own (y up) and run in worlds that are turned and moved at random, since a result
+// that holds along the axes only is no result. The worst of them counts. Tolerances are part of the cases.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Case A08: a ball dropped from 1 m. Its n-th apex is at h0 e^(2n) (Newton's restitution), whatever the step: the bounce
-// happens at its own time, not at the end of a step.
+// Case A08: a ball dropped from 1 m. Its n-th apex is at h0 e^(2n) (Newton's restitution), whatever the step: the
+// bounce happens at its own time, not at the end of a step.
 #include <cmath>
 
 #include "verify/cases/cases.h"
@@ -15,8 +15,9 @@ struct Drop {
     Frame frame;
     Drop(const Setting& s, Ground ground, float restitution) : world(s.world()), frame(s.frame) {
         add_ground(world, frame, ground, 0.5f, restitution);
-        ball = add_body(world, frame,
-                        {.shape = Sphere{0.5f}, .position = {0.0f, 1.5f, 0.0f}, .restitution = restitution, .mass = 1.0f});
+        ball =
+            add_body(world, frame,
+                     {.shape = Sphere{0.5f}, .position = {0.0f, 1.5f, 0.0f}, .restitution = restitution, .mass = 1.0f});
     }
     double height() const { return place(world, frame, ball).y - radius; }
     double speed() const { return velocity(world, frame, ball).y; }

@@ -19,7 +19,8 @@ struct Chain {
     BodyId first_support{};
 };
 
-// Rods of 1 kg along `directions` (unit vectors), one after the other from the frame's origin, where the first is fixed.
+// Rods of 1 kg along `directions` (unit vectors), one after the other from the frame's origin, where the first is
+// fixed.
 Chain make_chain(const Setting& s, const std::vector<Vec3>& directions, float damping) {
     Chain chain{s.world(), s.frame, {}, {}, {}};
     chain.first_support = add_fixed(chain.world, s.frame, {.shape = Sphere{0.02f}, .filter = {.group = 1}});
@@ -54,11 +55,9 @@ void carry(const Setting& s, Figures& out, bool hanging) {
     Chain chain = make_chain(s, std::vector<Vec3>(links, direction), 0.0f);
     constexpr float radius = 0.3f;
     Vec3 end = static_cast<float>(links * link_length) * direction;
-    BodyId load = add_body(chain.world, s.frame,
-                           {.shape = Sphere{radius},
-                            .position = at(end + radius * direction),
-                            .filter = {.group = 1},
-                            .mass = 100.0f});
+    BodyId load = add_body(
+        chain.world, s.frame,
+        {.shape = Sphere{radius}, .position = at(end + radius * direction), .filter = {.group = 1}, .mass = 100.0f});
     chain.joints.push_back(add_joint(chain.world, s.frame, JointType::ball, chain.rods.back(), load, end));
     Quantity& worst = hanging ? out.quantity("hanging: sum of gaps / length", at_most(s.pick(5e-3, 5e-4)))
                               : out.quantity("swung from level: sum of gaps / length", at_most(s.pick(0.01, 2e-3)));
@@ -70,18 +69,20 @@ void carry(const Setting& s, Figures& out, bool hanging) {
 
 }  // namespace
 
-// Hung over a span of 7 m the rods' slopes are tan = (k - (N + 1) / 2) w / H, with H / w = 4.619754 so that they span it.
-// It starts as a V and is damped to rest.
+// Hung over a span of 7 m the rods' slopes are tan = (k - (N + 1) / 2) w / H, with H / w = 4.619754 so that they span
+// it. It starts as a V and is damped to rest.
 void hanging_chain(const Setting& s, Figures& out) {
     constexpr double span = 7.0, pull = 4.619754;  // H / w
     std::vector<Vec3> directions;
     const double across = 0.5 * span / (0.5 * links * link_length);
     for (int k = 0; k < links; ++k)
-        directions.push_back(normalize(Vec3{static_cast<float>(across),
-                                            static_cast<float>((k < links / 2 ? -1 : 1) * std::sqrt(1.0 - across * across)), 0.0f}));
+        directions.push_back(
+            normalize(Vec3{static_cast<float>(across),
+                           static_cast<float>((k < links / 2 ? -1 : 1) * std::sqrt(1.0 - across * across)), 0.0f}));
     Chain chain = make_chain(s, directions, 1.0f);
     Vec3 far{static_cast<float>(span), 0.0f, 0.0f};
-    BodyId support = add_fixed(chain.world, s.frame, {.shape = Sphere{0.02f}, .position = at(far), .filter = {.group = 1}});
+    BodyId support =
+        add_fixed(chain.world, s.frame, {.shape = Sphere{0.02f}, .position = at(far), .filter = {.group = 1}});
     chain.joints.push_back(add_joint(chain.world, s.frame, JointType::ball, chain.rods.back(), support, far));
     advance(chain.world, s.steps(30.0), s.dt());
 

@@ -13,7 +13,7 @@ Totals follow(World& world, const Setting& s, double seconds, bool levers, const
     Quantity &momentum = out.quantity(name + ": |dP| / sum |p|", within(1e-6)),
              &angular = out.quantity(name + ": |dL| / sum |l|", within(1e-5)),
              // relative rounding of sums of single-precision states
-        &energy = out.quantity(name + ": energy after a step / before", at_most(1e-6));
+                 &energy = out.quantity(name + ": energy after a step / before", at_most(1e-6));
     Totals start = totals(world, s.frame.origin), last = start;
     const int steps = s.steps(seconds);
     for (int i = 0; i < steps; ++i) {
@@ -42,11 +42,9 @@ void gas(const Setting& s, Figures& out) {
         // Towards the middle, so that all of them meet, and a random part.
         Vec3 velocity = -2.0f * where + 3.0f * random.direction();
         Vec3 turning = 20.0f * random.direction();
-        add_body(world, s.frame,
-                 {.shape = Sphere{0.5f},
-                  .position = at(1.5f * where),
-                  .velocity = velocity,
-                  .angular_velocity = turning});
+        add_body(
+            world, s.frame,
+            {.shape = Sphere{0.5f}, .position = at(1.5f * where), .velocity = velocity, .angular_velocity = turning});
     }
     double before = totals(world, s.frame.origin).kinetic_energy;
     Totals end = follow(world, s, 2.0, false, "gas", out);

@@ -39,8 +39,7 @@ Wave topple(const Setting& s, float scale, float dt) {
         for (size_t k = 0; k < count; ++k) {
             if (passed[k] >= 0.0) continue;
             double now = degrees(angle_between(to_double(world.get(row[k]).rotation_matrix().y), upright));
-            if (now >= tilt_deg)
-                passed[k] = (i - (now - tilt_deg) / (now - before[k])) * static_cast<double>(dt);
+            if (now >= tilt_deg) passed[k] = (i - (now - tilt_deg) / (now - before[k])) * static_cast<double>(dt);
             before[k] = now;
         }
     }

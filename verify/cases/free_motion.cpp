@@ -9,9 +9,8 @@ namespace {
 constexpr Vec3 start_velocity{3.0f, -2.0f, 4.0f};
 
 BodyId add_ball(World& world, const Frame& frame, float drag) {
-    return add_body(
-        world, frame,
-        {.shape = Sphere{0.5f}, .velocity = start_velocity, .mass = 1.0f, .linear_damping = drag});
+    return add_body(world, frame,
+                    {.shape = Sphere{0.5f}, .velocity = start_velocity, .mass = 1.0f, .linear_damping = drag});
 }
 
 // Position error after 2 s of fall with linear drag: x = x0 + vt + (v0 - v_end) (1 - e^-ct) / c, v_end = g / c. Near
@@ -46,7 +45,8 @@ void free_fall(const Setting& s, Figures& out) {
     for (int i = 0; i <= steps; ++i) {
         if (i > 0) advance(world, 1, s.dt());
         double t = i * static_cast<double>(s.dt());
-        if (i % (steps / 20) == 0) fall.add(t, place(world, s.frame, ball).y, start_velocity.y * t - 0.5 * standard_gravity * t * t);
+        if (i % (steps / 20) == 0)
+            fall.add(t, place(world, s.frame, ball).y, start_velocity.y * t - 0.5 * standard_gravity * t * t);
         if (i < steps) continue;
         position.add(length(to_double(world.get(ball).position()) - (x0 + t * v0 + (0.5 * t * t) * g)));
         speed.add(length(to_double(world.get(ball).velocity()) - (v0 + t * g)));
@@ -70,7 +70,8 @@ void convergence_order(const Setting& s, Figures& out) {
         double x = std::log(1.0 / rate), y = std::log(error);
         n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
     }
-    if (n >= 2) out.quantity("fitted order with drag", at_least(0.1)).add((n * sxy - sx * sy) / (n * sxx - sx * sx), 2.0);
+    if (n >= 2)
+        out.quantity("fitted order with drag", at_least(0.1)).add((n * sxy - sx * sy) / (n * sxx - sx * sx), 2.0);
 }
 
 // A symmetric top's axis goes round L at L / I1 on a cone (Landau and Lifshitz, Mechanics, paragraph 33).
@@ -120,8 +121,7 @@ void dzhanibekov(const Setting& s, Figures& out) {
     Curve& curve = out.curve("energy while tumbling", "time, s", "energy, J");
     World world = s.world({});
     BodyId racket = add_body(
-        world, s.frame,
-        {.shape = Box{{1.0f, 0.5f, 0.2f}}, .angular_velocity = {0.05f, 5.0f, 0.05f}, .mass = 12.0f});
+        world, s.frame, {.shape = Box{{1.0f, 0.5f, 0.2f}}, .angular_velocity = {0.05f, 5.0f, 0.05f}, .mass = 12.0f});
     Vec3d l0 = to_double(world.get(racket).angular_momentum());
     double e0 = totals(world, s.frame.origin).kinetic_energy, before = 5.0;
     int flips = 0;

@@ -76,8 +76,8 @@ void oblique(const Setting& s, Figures& out, float friction, double tangential) 
 
 }  // namespace
 
-// n in, n out: with gaps by momentum and energy alone, touching as in nature, where the impulse passes from ball to ball
-// (Smith, Kaufman, Vouga, Tamstorf, Grinspun, "Reflections on Simultaneous Impact", SIGGRAPH 2012).
+// n in, n out: with gaps by momentum and energy alone, touching as in nature, where the impulse passes from ball to
+// ball (Smith, Kaufman, Vouga, Tamstorf, Grinspun, "Reflections on Simultaneous Impact", SIGGRAPH 2012).
 void cradle(const Setting& s, Figures& out) {
     for (bool touching : {false, true}) {
         std::string name = touching ? "touching: " : "with gaps: ";

@@ -38,7 +38,8 @@ struct Linkage {
     Linkage(const Setting& s, float crank_length)
         : world(s.world({})), base(add_fixed(world, s.frame, {.shape = Sphere{0.02f}, .filter = {.group = 1}})) {
         crank = add_rod(world, s.frame, {}, {crank_length, 0.0f, 0.0f}, {}, drive);
-        JointDef motor = world.joint_at(JointType::hinge, base, crank, s.frame.point({}), s.frame.direction(z_axis)).value();
+        JointDef motor =
+            world.joint_at(JointType::hinge, base, crank, s.frame.point({}), s.frame.direction(z_axis)).value();
         motor.motor = {static_cast<float>(drive), 1000.0f};
         joints.push_back(world.add_joint(motor).value());
     }
@@ -60,8 +61,8 @@ double slider_crank_energy(double phi) {
     double psi_rate = drive * r * std::cos(phi) / std::sqrt(l * l - r * r * std::sin(phi) * std::sin(phi));
     double x_rate = 0.5 * (-drive * r * std::sin(phi) + slider), y_rate = 0.5 * drive * r * std::cos(phi);
     double crank_inertia = (r * r + 0.0016) / 12.0 + 0.25 * r * r, rod_inertia = (l * l + 0.0016) / 12.0;
-    return 0.5 * (crank_inertia * drive * drive + x_rate * x_rate + y_rate * y_rate + rod_inertia * psi_rate * psi_rate +
-                  slider * slider);
+    return 0.5 * (crank_inertia * drive * drive + x_rate * x_rate + y_rate * y_rate +
+                  rod_inertia * psi_rate * psi_rate + slider * slider);
 }
 
 // By virtual work the motor's torque is dE / d(phi) at constant speed.
@@ -75,9 +76,9 @@ void slider_crank(const Setting& s, Figures& out) {
     World& world = linkage.world;
     const Vec3 pin{static_cast<float>(r), 0.0f, 0.0f}, wrist{static_cast<float>(r + l), 0.0f, 0.0f};
     BodyId rod = add_rod(world, s.frame, pin, wrist, {0.0f, static_cast<float>(drive * r), 0.0f}, -drive * r / l);
-    BodyId slider = add_body(
-        world, s.frame,
-        {.shape = Box{{0.05f, 0.05f, 0.05f}}, .position = at(wrist), .filter = {.group = 1}, .mass = 1.0f});
+    BodyId slider =
+        add_body(world, s.frame,
+                 {.shape = Box{{0.05f, 0.05f, 0.05f}}, .position = at(wrist), .filter = {.group = 1}, .mass = 1.0f});
     linkage.joints.push_back(add_joint(world, s.frame, JointType::hinge, linkage.crank, rod, pin, z_axis));
     linkage.joints.push_back(add_joint(world, s.frame, JointType::hinge, rod, slider, wrist, z_axis));
     linkage.joints.push_back(add_joint(world, s.frame, JointType::slider, linkage.base, slider, wrist));
@@ -124,7 +125,8 @@ void four_bar(const Setting& s, Figures& out) {
         return (along.x * difference.y - along.y * difference.x) / dot(along, along);
     };
     Vec3d pin_rate{0.0, drive * r, 0.0};
-    BodyId middle = add_rod(world, s.frame, pin, top, as_float(pin_rate), spin_of(joint - to_double(pin), rate - pin_rate));
+    BodyId middle =
+        add_rod(world, s.frame, pin, top, as_float(pin_rate), spin_of(joint - to_double(pin), rate - pin_rate));
     BodyId last = add_rod(world, s.frame, far, top, {}, spin_of(joint - to_double(far), rate));
     linkage.joints.push_back(add_joint(world, s.frame, JointType::hinge, linkage.crank, middle, pin, z_axis));
     linkage.joints.push_back(add_joint(world, s.frame, JointType::hinge, middle, last, top, z_axis));
@@ -153,7 +155,8 @@ void oscillate(const Setting& s, Figures& out, double hertz, double zeta, double
                             .velocity = {static_cast<float>(reach * w), 0.0f, 0.0f},
                             .filter = {.group = 1},
                             .mass = 1.0f});
-    JointDef def = world.joint_at(JointType::slider, base, mass, s.frame.origin, s.frame.direction({1.0f, 0.0f, 0.0f})).value();
+    JointDef def =
+        world.joint_at(JointType::slider, base, mass, s.frame.origin, s.frame.direction({1.0f, 0.0f, 0.0f})).value();
     def.spring = {static_cast<float>(w * w), static_cast<float>(2.0 * zeta * w)};
     world.add_joint(def).value();
     char name[64];
@@ -163,7 +166,8 @@ void oscillate(const Setting& s, Figures& out, double hertz, double zeta, double
     const int steps = s.steps(seconds);
     for (int i = 1; i <= steps; ++i) {
         advance(world, 1, s.dt());
-        double x = place(world, s.frame, mass).x, v = velocity(world, s.frame, mass).x, t = i * static_cast<double>(s.dt());
+        double x = place(world, s.frame, mass).x, v = velocity(world, s.frame, mass).x,
+               t = i * static_cast<double>(s.dt());
         if (before * x < 0.0) {
             last = t - x / (x - before) * static_cast<double>(s.dt());
             if (crossings++ == 0) first = last;

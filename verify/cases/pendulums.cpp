@@ -96,7 +96,7 @@ void swing(const Setting& s, Figures& out, int amplitude_deg, double seconds, Cu
         energy.add((energy_above_ground(world, s.frame) - start) / mgd);
         apart.add(gap(world, joint));
         if (curve && i % (steps / 30) == 0)
-            curve->add(t, energy_above_ground(world, s.frame) - start, 0.0);
+            curve->add(t, 1.0 + (energy_above_ground(world, s.frame) - start) / mgd, 1.0);
     }
     time.add((last - first) / (crossings - 1), period);
 }
@@ -111,7 +111,7 @@ void heavy_top(const Setting& s, Figures& out) {
 }
 
 void pendulum(const Setting& s, Figures& out) {
-    Curve& curve = out.curve("energy of a pendulum from 90 degrees", "time, s", "change, J");
+    Curve& curve = out.curve("energy of a pendulum from 90 degrees", "time, s", "above its lowest / m g d");
     swing(s, out, 90, 60.0, &curve);
     for (int amplitude : {5, 30, 150}) swing(s, out, amplitude, 20.0, nullptr);
 }

@@ -1,6 +1,6 @@
-// Case A23: a box of 10 kg is pulled over the ground under 25 balls of 1 kg, which roll on it (after SimBenchmark). With
-// f1 = mu1 (M + n m) g from the ground, every ball gets f2 = ((F - f1) / M) / (3.5 / m + n / M) from the box, for its
-// lowest point has 1 + 5/2 times the acceleration of its centre.
+// Case A23: a box of 10 kg is pulled over the ground under 25 balls of 1 kg, which roll on it (after SimBenchmark).
+// With f1 = mu1 (M + n m) g from the ground, every ball gets f2 = ((F - f1) / M) / (3.5 / m + n / M) from the box, for
+// its lowest point has 1 + 5/2 times the acceleration of its centre.
 #include <cmath>
 
 #include "verify/cases/cases.h"
@@ -25,17 +25,17 @@ double mean_squared_error(const Setting& s, Vec3 direction, double seconds, Curv
     World world = s.world();
     add_ground(world, s.frame, Ground::plane, 0.4f);
     // The mean of two coefficients counts: 0.4 between box and ground, 0.8 between box and balls.
-    BodyId box = add_body(
-        world, s.frame,
-        {.shape = Box{{10.0f, 0.5f, 10.0f}}, .position = {0.0f, 0.5f, 0.0f}, .friction = 0.4f, .mass = 10.0f});
+    BodyId box =
+        add_body(world, s.frame,
+                 {.shape = Box{{10.0f, 0.5f, 10.0f}}, .position = {0.0f, 0.5f, 0.0f}, .friction = 0.4f, .mass = 10.0f});
     BodyId middle{};
     for (int i = 0; i < n; ++i) {
-        BodyId ball = add_body(world, s.frame,
-                               {.shape = Sphere{radius},
-                                .position = {2.0f * static_cast<float>(i % 5 - 2), 1.0f + radius,
-                                             2.0f * static_cast<float>(i / 5 - 2)},
-                                .friction = 1.2f,
-                                .mass = 1.0f});
+        BodyId ball = add_body(
+            world, s.frame,
+            {.shape = Sphere{radius},
+             .position = {2.0f * static_cast<float>(i % 5 - 2), 1.0f + radius, 2.0f * static_cast<float>(i / 5 - 2)},
+             .friction = 1.2f,
+             .mass = 1.0f});
         if (i == n / 2) middle = ball;
     }
     const int steps = static_cast<int>(seconds / static_cast<double>(step) + 0.5);

@@ -56,9 +56,8 @@ void tipping(const Setting& s, Figures& out) {
             return tips(s, ground, gravity, 0.0, 0.0f);
         });
         angle.add(found, exact_angle);
-        double pushed = bisect(0.97, 1.03, 6, [&](double part) {
-            return tips(s, ground, down, part * exact_force, level);
-        });
+        double pushed =
+            bisect(0.97, 1.03, 6, [&](double part) { return tips(s, ground, down, part * exact_force, level); });
         force.add(pushed * exact_force, exact_force);
     }
 }

@@ -46,6 +46,17 @@ void pull(const Setting& s, Figures& out) {
     if (moving_since == 0.0) breakaway.add(0.0, static_mu);  // it never moved
 }
 
+// Over N, at time t on a slow belt: it rises with the belt to mu_s, then swings over to 2 mu_k - mu_s at `frequency`,
+// rad/s.
+double exact_pull(double t, double rise, double frequency) {
+    const double highest = static_mu, middle = kinetic_mu, half_period = pi_d / frequency;
+    if (t < highest / rise) return rise * t;
+    const double cycle = 2.0 * (highest - middle) / rise + half_period;
+    double phase = std::fmod(t - highest / rise, cycle);
+    if (phase < half_period) return middle + (highest - middle) * std::cos(frequency * phase);
+    return 2.0 * middle - highest + rise * (phase - half_period);
+}
+
 // On a slow belt and held by a spring it sticks and slips by turns: the spring's force drops by 2 (mu_s - mu_k) N
 // (Rabinowicz, Friction and Wear of Materials, 1965). The spring is an applied force, taken in the middle of each step.
 void belt(const Setting& s, Figures& out) {
@@ -72,10 +83,8 @@ void belt(const Setting& s, Figures& out) {
         double ratio = force / weight, t = i * dt;
         highest = std::max(highest, ratio);
         if (highest > 0.55) lowest = std::min(lowest, ratio);  // it has slipped once
-        // Exact: rises to mu_s with the belt, then falls at once, as seen at this scale.
-        double rise = stiffness * belt_speed / weight, cycle = 2.0 * (static_mu - kinetic_mu) / rise, start = static_mu / rise;
-        double exact = t < start ? rise * t : 2.0 * kinetic_mu - static_mu + rise * std::fmod(t - start, cycle);
-        if (i % (steps / 80) == 0) curve.add(t, ratio, exact);
+        if (i % (steps / 80) == 0)
+            curve.add(t, ratio, exact_pull(t, stiffness * belt_speed / weight, std::sqrt(stiffness / mass)));
     }
     drop.add(highest - lowest, 2.0 * (static_cast<double>(static_mu) - static_cast<double>(kinetic_mu)));
 }

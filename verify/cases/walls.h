@@ -11,8 +11,8 @@ inline constexpr Wall walls[] = {Wall::box, Wall::closed_mesh, Wall::sheet};
 // `half` extents; a sheet has no thickness and lies in x = 0. Meshes have 6 x 6 cells a side.
 Shape wall_shape(Wall wall, Vec3 half);
 
-// A ball of 5 cm at `speed` towards a wall across x = 0 of the frame, hitting it at an angle; `phase` (0 .. 1) moves the
-// impact within its step. True where it never came to the other side.
+// A ball of 5 cm at `speed` towards a wall across x = 0 of the frame, hitting it at an angle; `phase` (0 .. 1) moves
+// the impact within its step. True where it never came to the other side.
 struct Shot {
     Wall wall;
     float thickness, speed, phase;
