@@ -6,6 +6,7 @@
 
 #include "apps/lendulet/commands.h"
 #include "bench/broad_phase/bench.h"
+#include "bench/lists.h"
 #include "bench/scenes/bench.h"
 #include "io/file.h"
 
@@ -119,6 +120,23 @@ void add_scene_options(CLI::App& command, bench::SceneOptions& options) {
     command.add_option("--csv", options.csv, "write the results as CSV")->type_name("FILE");
 }
 
+void add_verify_options(CLI::App& command, VerifyOptions& options, std::string& cases, std::string& quality) {
+    command.add_option("--cases", cases, "which cases, such as A01,A08 (default all)")->type_name("ID,...");
+    command.add_option("--quality", quality, "d60 (steps of 1/60 s, the defaults) or hq (1/240 s, 16 substeps)")
+        ->type_name("NAME");
+    command.add_option("--threads", options.run.workers, "threads (default: as many as there are)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 64));
+    command.add_option("--json", options.json, "write the figures as JSON; - for standard output")->type_name("FILE|-");
+    command.add_option("--html", options.html, "write a page with the table and the curves")->type_name("FILE");
+    command.add_option("--svg", options.svg, "write the curves as a picture")->type_name("FILE");
+}
+
+void finish_verify_options(const std::string& cases, const std::string& quality, VerifyOptions& options) {
+    if (!cases.empty()) options.run.cases = bench::parts_of(cases);
+    if (!quality.empty()) options.run.quality = choice("--quality", verify::quality_from_name(quality));
+}
+
 // An empty list or file name would pass for an option that was not given.
 void refuse_empty(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options()) {
@@ -133,10 +151,12 @@ int finish(const Result<int>& measured) { return measured.ok() ? measured.value(
 }  // namespace
 
 int execute(int argc, char** argv) {
-    if (argc < 2) return fail("a command is required: run, info, scenes or bench (--help says more)");
+    if (argc < 2) return fail("a command is required: run, info, scenes, verify or bench (--help says more)");
     std::string first = argv[1];
-    if (first.rfind('-', 0) != 0 && first != "run" && first != "info" && first != "scenes" && first != "bench") {
-        return fail("\"" + printable(first) + "\" is no command; there are run, info, scenes and bench");
+    bool known = first.rfind('-', 0) == 0;
+    for (const char* command : {"run", "info", "scenes", "verify", "bench"}) known |= first == command;
+    if (!known) {
+        return fail("\"" + printable(first) + "\" is no command; there are run, info, scenes, verify and bench");
     }
     CLI::App app{"Lendulet: rigid bodies in three dimensions.", "lendulet"};
     app.set_version_flag("--version", "lendulet " LENDULET_VERSION);
@@ -149,6 +169,10 @@ int execute(int argc, char** argv) {
     CLI::App* info_command = app.add_subcommand("info", "check and describe a recording");
     info_command->add_option("FILE", recording, "a recording made by `lendulet run --record`")->required();
     CLI::App* scenes_command = app.add_subcommand("scenes", "list the built-in scenes");
+    CLI::App* verify_command = app.add_subcommand("verify", "measure the physics against closed forms");
+    VerifyOptions verify_options;
+    std::string verify_cases, verify_quality;
+    add_verify_options(*verify_command, verify_options, verify_cases, verify_quality);
     CLI::App* bench_command = app.add_subcommand("bench", "measure this engine beside others");
     bench_command->require_subcommand(1);
     bench::BroadPhaseOptions broad_phase;
@@ -160,6 +184,10 @@ int execute(int argc, char** argv) {
     try {
         app.parse(argc, argv);
         if (run_command->parsed()) finish_run_options(*run_command, raw, options);
+        if (verify_command->parsed()) {
+            refuse_empty(*verify_command);
+            finish_verify_options(verify_cases, verify_quality, verify_options);
+        }
         if (broad_phase_command->parsed()) refuse_empty(*broad_phase_command);
         if (bench_scenes_command->parsed()) refuse_empty(*bench_scenes_command);
     } catch (const CLI::ParseError& error) {
@@ -171,6 +199,7 @@ int execute(int argc, char** argv) {
     if (run_command->parsed()) return run(options);
     if (info_command->parsed()) return info(recording);
     if (scenes_command->parsed()) return list_scenes();
+    if (verify_command->parsed()) return verify(verify_options);
     if (bench_scenes_command->parsed()) return finish(bench::bench_scenes(bench_scene_options));
     if (broad_phase_command->parsed()) return finish(bench::bench_broad_phase(broad_phase));
     return fail("a command is required");

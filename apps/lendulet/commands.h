@@ -1,10 +1,12 @@
-// The commands of the program. Each returns the exit code: 0, or 2 after one sentence about bad input on stderr.
+// The commands of the program. Each returns the exit code: 0, or 2 after one sentence about bad input on stderr; verify
+// also 1.
 #pragma once
 
 #include <string>
 #include <string_view>
 
 #include "lendulet/lendulet.h"
+#include "verify/verify.h"
 
 namespace lendulet::cli {
 
@@ -22,7 +24,13 @@ struct RunOptions {
     bool quiet = false;
 };
 
+struct VerifyOptions {
+    verify::Options run;
+    std::string json, html, svg;  // files, empty for none; json "-": standard output
+};
+
 int run(const RunOptions& options);
+int verify(const VerifyOptions& options);  // 1 where a figure is outside its tolerance
 int info(const std::string& file);
 int list_scenes();
 

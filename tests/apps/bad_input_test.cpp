@@ -66,6 +66,19 @@ TEST(BadInput, CommandsAndOptions) {
     expect_refused({"run", "scenes/files/motion.gltf", "--threads", "0"}, "");
 }
 
+TEST(BadInput, Verify) {
+    expect_refused({"verify", "extra"}, "extra");
+    expect_refused({"verify", "--cases"}, "--cases");
+    expect_refused({"verify", "--cases", ""}, "--cases must not be empty");
+    expect_refused({"verify", "--cases", "A01,B99"}, "there is no case \"B99\"; there are A01, ");
+    expect_refused({"verify", "--cases", "A01,"}, "there is no case \"\"");
+    expect_refused({"verify", "--quality", "best"}, "there is no quality \"best\"; there are d60 and hq");
+    expect_refused({"verify", "--threads", "0"}, "--threads");
+    for (const char* option : {"--json", "--html", "--svg"})
+        expect_refused({"verify", "--cases", "A12", option, "/no/such/directory/x"},
+                       "/no/such/directory/x: cannot be written");
+}
+
 TEST(BadInput, SceneFiles) {
     expect_refused({"run", "missing.gltf"}, "missing.gltf: no such file");
     expect_refused({"run", "missing.glb", "--quiet"}, "missing.glb: no such file");
