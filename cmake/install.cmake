@@ -2,7 +2,12 @@
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/lendulet)
 
-install(TARGETS lendulet EXPORT lendulet-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+# The C interface brings the built-in scenes along.
+set(installed lendulet)
+if(TARGET lendulet_c)
+    list(APPEND installed lendulet_c lendulet_scenes lendulet_flags)
+endif()
+install(TARGETS ${installed} EXPORT lendulet-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/lendulet DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 install(EXPORT lendulet-targets NAMESPACE lendulet:: DESTINATION ${package_folder})
 

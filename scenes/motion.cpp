@@ -83,8 +83,10 @@ SceneDescription large_world_sleep(int count) {
                           (static_cast<float>(i / 10 % 10) - 4.5f) * 2.0f};
         add_body(scene, shape, position).allow_sleep = false;
     }
-    scene.before_step = [first, random = Random{}](SceneDriver& driver, int step) mutable {
+    scene.before_step = [first](SceneDriver& driver, int step) {
         if (step % 60 != 0) return;
+        // Drawn anew from the step: a world that was put back to an earlier step goes on as it did.
+        Random random(static_cast<uint64_t>(step) + 1);
         for (int i = first; i < first + jumpers; ++i) {
             Vec3 velocity;
             velocity.x = random.range(-4.0f, 4.0f);

@@ -2,7 +2,7 @@
 import os
 import re
 
-CODE_FOLDERS = ("src", "include", "scenes", "io", "apps", "bench", "verify", "examples", "tests")
+CODE_FOLDERS = ("src", "include", "scenes", "io", "bindings", "apps", "bench", "verify", "examples", "tests")
 CODE_ENDINGS = (".h", ".cpp", ".inl")
 
 _TOKEN = re.compile(

@@ -127,6 +127,7 @@ public:
     int collider_count() const;
     const Shape& shape(int collider = 0) const;
     Transform collider_pose(int collider = 0) const;  // from the body's frame to the shape's
+    bool is_trigger(int collider = 0) const;
     ColliderId collider(int index = 0) const;
     Aabb aabb() const;  // of all colliders, without margin
 

@@ -33,6 +33,7 @@ enum class ErrorCode : uint8_t {
     unknown_name,       // no scene, option or structure of that name
     parse,              // a file that is malformed
     io,                 // a file that cannot be read or written
+    bad_snapshot,       // bytes that no snapshot() gave, or not all of them
 };
 
 // A refused call: the kind and one sentence with what and where.

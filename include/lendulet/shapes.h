@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <variant>
+#include <vector>
 
 #include "lendulet/math.h"
 #include "lendulet/result.h"
@@ -73,6 +74,8 @@ public:
 
     std::span<const Vec3> vertices() const;  // corners of the hull, local frame, m
     int face_count() const;
+    // Its surface, faces cut into fans: three indices into vertices() per triangle, counter-clockwise from outside.
+    std::vector<uint32_t> triangles() const;
     float rounding() const { return rounding_; }        // radius of the sphere swept around the hull, m
     bool is_built() const { return data_ != nullptr; }  // false for a default-constructed one, which no body accepts
     const HullData& data() const { return *data_; }     // only where it is built
@@ -98,6 +101,9 @@ public:
     static Result<TriangleMesh> from_triangles(std::span<const Vec3> vertices, std::span<const uint32_t> indices);
 
     int triangle_count() const;
+    std::span<const Vec3> vertices() const;  // those in use, each position once, local frame, m
+    // Three indices into vertices() per triangle, in the order in which they were given.
+    std::vector<uint32_t> triangles() const;
     int dropped_triangles() const;                      // how many had no area
     bool is_built() const { return data_ != nullptr; }  // false for a default-constructed one, which no body accepts
     const MeshData& data() const { return *data_; }     // only where it is built

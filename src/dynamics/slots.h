@@ -54,6 +54,19 @@ public:
     int count() const { return order_.count(); }
     uint32_t in_order(int index) const { return order_[static_cast<size_t>(index)]; }  // slots by creation
     const Array<uint32_t>& order() const { return order_; }
+    // How often the slot was given back: its generation without the number of the world.
+    uint32_t uses(uint32_t slot) const { return generation_[slot] & count_mask; }
+
+    // Which slots are handed out next, the last of them first. For snapshots.
+    const Array<uint32_t>& free_list() const { return free_; }
+    // Brings the list back to what it was when there were `capacity` slots: new objects then get the slots that they
+    // would have got at that time. Slots made since come in their order after those of the list.
+    void set_free_list(const Array<uint32_t>& list, size_t capacity) {
+        free_.clear();
+        for (size_t slot = generation_.size(); slot > capacity; --slot)
+            free_.push_back(static_cast<uint32_t>(slot - 1));
+        free_.append(list.data(), list.size());
+    }
 
 private:
     static constexpr int world_shift = 24;

@@ -264,6 +264,16 @@ std::span<const Vec3> ConvexHull::vertices() const {
     return data_ ? std::span<const Vec3>(data_->vertices) : std::span<const Vec3>();
 }
 
+std::vector<uint32_t> ConvexHull::triangles() const {
+    std::vector<uint32_t> indices;
+    if (!data_) return indices;
+    auto corner = [&](const HullFace& f, uint32_t i) { return data_->edges[f.first_edge + i].origin; };
+    for (const HullFace& f : data_->faces)
+        for (uint32_t i = 2; i < f.edge_count; ++i)
+            for (uint32_t k : {0u, i - 1, i}) indices.push_back(corner(f, k));
+    return indices;
+}
+
 int ConvexHull::face_count() const { return data_ ? static_cast<int>(data_->faces.size()) : 0; }
 
 }  // namespace lendulet

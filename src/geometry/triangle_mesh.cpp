@@ -195,6 +195,22 @@ Result<TriangleMesh> TriangleMesh::from_triangles(std::span<const Vec3> vertices
 
 int TriangleMesh::triangle_count() const { return data_ ? static_cast<int>(data_->triangles.size()) : 0; }
 
+std::span<const Vec3> TriangleMesh::vertices() const {
+    return data_ ? std::span<const Vec3>(data_->vertices) : std::span<const Vec3>{};
+}
+
+std::vector<uint32_t> TriangleMesh::triangles() const {
+    if (!data_) return {};
+    std::vector<uint32_t> place(data_->triangles.size()), indices;
+    for (uint32_t i = 0; i < place.size(); ++i) place[i] = i;
+    auto given = [&](uint32_t i) { return data_->triangles[i].original; };
+    // order: total, each was given once
+    std::sort(place.begin(), place.end(), [&](uint32_t a, uint32_t b) { return given(a) < given(b); });
+    indices.reserve(3 * place.size());
+    for (uint32_t i : place) indices.insert(indices.end(), data_->triangles[i].vertex, data_->triangles[i].vertex + 3);
+    return indices;
+}
+
 int TriangleMesh::dropped_triangles() const { return data_ ? data_->dropped : 0; }
 
 }  // namespace lendulet

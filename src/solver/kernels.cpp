@@ -16,6 +16,10 @@ const SolverKernels& solver_kernels(int width) {
     if (width == 8) return cpu_has_avx2() ? avx2_kernels : baseline_kernels_8;
     return width == 4 ? baseline_kernels_4 : baseline_kernels_1;
 }
+#elif defined(__wasm__)
+// Four lanes are all there are; wider copies would only make the module larger, and give the same bits.
+int native_width() { return 4; }
+const SolverKernels& solver_kernels(int width) { return width == 1 ? baseline_kernels_1 : baseline_kernels_4; }
 #else
 int native_width() { return 4; }
 

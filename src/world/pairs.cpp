@@ -100,6 +100,20 @@ void PairTable::place_records(ColliderPair& pair, bool mesh) {
     }
 }
 
+void PairTable::clear() {
+    now.clear(), before.clear(), begun.clear();
+    caches.clear(), poses.clear(), free_caches.clear();
+    free_single_.clear(), free_mesh_.clear();
+    record_count = 0;
+}
+
+ColliderPair& PairTable::add(uint32_t a, uint32_t b) {
+    ColliderPair p{};
+    p.a = a, p.b = b;
+    p.cache = take_cache();
+    return now.push_back(p);
+}
+
 void PairTable::remove_collider(uint32_t slot) {
     for (ColliderPair& p : now)
         if ((p.a == slot || p.b == slot) && p.cache != no_cache) free_caches.push_back(p.cache), p.cache = no_cache;

@@ -62,6 +62,9 @@ struct PairTable {
     void place_records(ColliderPair& pair, bool mesh);
     // Marks pairs with a collider that is removed, so that the next owner of its slot does not inherit them.
     void remove_collider(uint32_t slot);
+    // Forgets all pairs; then a snapshot's are added again, in their order, each with a cache of its own.
+    void clear();
+    ColliderPair& add(uint32_t a, uint32_t b);
 
 private:
     void sort(Array<BoxPair>& boxes);

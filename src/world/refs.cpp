@@ -37,6 +37,9 @@ Status checked(bool good, const char* call, const char* what) {
 const Shape& StaticBodyRef::shape(int collider) const {
     return world_->colliders.shape[collider_slot(*world_, slot_, collider)];
 }
+bool StaticBodyRef::is_trigger(int collider) const {
+    return world_->colliders.info[collider_slot(*world_, slot_, collider)].is_trigger;
+}
 Transform StaticBodyRef::collider_pose(int collider) const {
     return world_->colliders.given[collider_slot(*world_, slot_, collider)];
 }

@@ -114,6 +114,8 @@ void limit_motion(WorldData& world);
 void update_bounds(WorldData& world, float dt);
 void find_box_pairs(WorldData& world);
 void match_pairs(WorldData& world);
+void begin_pair(WorldData& world, ColliderPair& pair);  // what does not change while a pair lasts
+void list_contacts(WorldData& world);                   // what later stages go through, in the order of pairs
 void find_contacts(WorldData& world, float dt);
 void update_islands(WorldData& world, float dt);
 void choose_substeps(WorldData& world, float dt);

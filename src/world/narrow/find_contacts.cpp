@@ -27,22 +27,6 @@ bool wanted(const WorldData& world, const BoxPair& p) {
     return !world.joints.keeps_apart(a.body, b.body);
 }
 
-// What does not change while a pair lasts.
-void begin_pair(WorldData& world, ColliderPair& p) {
-    const ColliderStore& c = world.colliders;
-    const Geometry &a = c.geometry[p.a], &b = c.geometry[p.b];
-    p.flipped = !moved_by_constraints(world.bodies.info[c.info[p.b].body]);
-    p.fixed_a = p.flipped || !moved_by_constraints(world.bodies.info[c.info[p.a].body]);
-    if (c.info[p.a].is_trigger || c.info[p.b].is_trigger) {
-        p.kind = PairKind::trigger;
-        return;
-    }
-    world.pairs.place_records(p, a.kind == GeometryKind::mesh || b.kind == GeometryKind::mesh);
-    p.kind = is_sharp_box(a) && is_sharp_box(b) ? PairKind::boxes
-             : has_closed_form(a, b)            ? PairKind::round
-                                                : PairKind::general;
-}
-
 uint32_t collider_a(const ColliderPair& p) { return p.flipped ? p.b : p.a; }
 uint32_t collider_b(const ColliderPair& p) { return p.flipped ? p.a : p.b; }
 
@@ -263,7 +247,23 @@ private:
     float scale_;
 };
 
-// The lists that later stages go through, in the order of pairs.
+}  // namespace
+
+void begin_pair(WorldData& world, ColliderPair& p) {
+    const ColliderStore& c = world.colliders;
+    const Geometry &a = c.geometry[p.a], &b = c.geometry[p.b];
+    p.flipped = !moved_by_constraints(world.bodies.info[c.info[p.b].body]);
+    p.fixed_a = p.flipped || !moved_by_constraints(world.bodies.info[c.info[p.a].body]);
+    if (c.info[p.a].is_trigger || c.info[p.b].is_trigger) {
+        p.kind = PairKind::trigger;
+        return;
+    }
+    world.pairs.place_records(p, a.kind == GeometryKind::mesh || b.kind == GeometryKind::mesh);
+    p.kind = is_sharp_box(a) && is_sharp_box(b) ? PairKind::boxes
+             : has_closed_form(a, b)            ? PairKind::round
+                                                : PairKind::general;
+}
+
 void list_contacts(WorldData& world) {
     world.touching.clear();
     world.overlaps.clear();
@@ -277,8 +277,6 @@ void list_contacts(WorldData& world) {
                                   world.colliders.id(other)});
     }
 }
-
-}  // namespace
 
 void find_box_pairs(WorldData& world) {
     world.box_pairs.clear();

@@ -1,0 +1,61 @@
+// What stands behind a world's handle in the C interface, and what all its functions share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lendulet/lendulet_c.h"
+#include "scenes/scene.h"
+
+// A point of a body that is pulled.
+struct lendulet_grip {
+    lendulet::BodyId body{};
+    lendulet::Vec3 on_body;  // in the body's frame, m
+    lendulet::Position target;
+};
+
+struct lendulet_world {
+    explicit lendulet_world(lendulet::Scene built) : scene(std::move(built)) {}
+    lendulet::Scene scene;
+    lendulet_grip grip{};
+    // What read functions point to.
+    std::vector<lendulet_pose> poses;
+    std::vector<lendulet_body> bodies;
+    std::vector<lendulet_collider> colliders;
+    std::vector<lendulet::Shape> meshes;  // hulls and meshes, one for each that the colliders share
+    std::vector<lendulet::Vec3> vertices;
+    std::vector<uint32_t> indices;
+    std::vector<lendulet_contact> contacts;
+    std::vector<uint8_t> snapshot;
+};
+
+namespace lendulet::c {
+
+// Remembers the sentence, returns the code.
+lendulet_result refuse(const Error& error);
+inline lendulet_result result_of(const Status& status) { return status.ok() ? 0 : refuse(status.error()); }
+// Refusal of a null world or pointer.
+lendulet_result refuse_null(const char* call);
+lendulet_result refuse_body(const char* call);
+
+inline lendulet_body number_of(BodyId id) { return uint64_t{id.generation} << 32 | id.index; }
+inline BodyId id_of(lendulet_body number) {
+    return {static_cast<uint32_t>(number), static_cast<uint32_t>(number >> 32)};
+}
+inline Vec3 vector(const float* v) { return {v[0], v[1], v[2]}; }
+inline Position position(const float* v) { return {v[0], v[1], v[2]}; }
+inline void put(float* out, Vec3 v) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
+inline void put(float* out, Position p) { put(out, from_origin(p)); }
+inline void put(float* out, Quat q) { out[0] = q.x, out[1] = q.y, out[2] = q.z, out[3] = q.w; }
+
+// The force of the grip, before a step.
+void pull(lendulet_world& world);
+
+// Points `out` to a list and returns how many there are.
+template <class T>
+lendulet_result give(const std::vector<T>& list, const T** out) {
+    *out = list.data();
+    return static_cast<lendulet_result>(list.size());
+}
+
+}  // namespace lendulet::c

@@ -1,0 +1,208 @@
+// A saved state as bytes: little-endian, without padding; what is at rest or absent takes a bit. One function for each
+// kind of object goes through its fields, for writing and for reading.
+//
+// The bytes begin with "LENDSNAP", a version and their number, and end with a checksum, so that truncated and altered
+// ones are told from good ones before anything is read from them.
+#include <bit>
+#include <cstring>
+
+#include "base/hash.h"
+#include "world/snapshot/saved_state.h"
+#include "world/validate.h"
+
+namespace lendulet {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+constexpr char magic[8] = {'L', 'E', 'N', 'D', 'S', 'N', 'A', 'P'};
+constexpr uint32_t version = 1;
+constexpr size_t header_bytes = sizeof magic + 2 * sizeof(uint32_t), checksum_bytes = sizeof(uint64_t);
+
+uint64_t checksum(std::span<const uint8_t> bytes) {
+    uint64_t hash = bytes.size();
+    for (size_t i = 0; i < bytes.size(); i += sizeof(uint64_t)) {
+        uint64_t word = 0;
+        std::memcpy(&word, bytes.data() + i, bytes.size() - i < sizeof word ? bytes.size() - i : sizeof word);
+        hash = hash_combine(hash, word);
+    }
+    return hash;
+}
+
+class Writer {
+public:
+    static constexpr bool reading = false;
+    template <class... T>
+    void operator()(T&... values) {
+        (put(&values, sizeof values), ...);
+    }
+    template <class T, class Fields>
+    void list(Array<T>& list, Fields&& fields) {
+        uint32_t count = static_cast<uint32_t>(list.size());
+        (*this)(count);
+        for (T& item : list) fields(*this, item);
+    }
+    std::vector<uint8_t> bytes;
+
+private:
+    void put(const void* value, size_t size) {
+        const auto* p = static_cast<const uint8_t*>(value);
+        bytes.insert(bytes.end(), p, p + size);
+    }
+};
+
+// Gives zeros once the bytes have ended, and remembers that they did.
+class Reader {
+public:
+    static constexpr bool reading = true;
+    explicit Reader(std::span<const uint8_t> bytes) : left_(bytes) {}
+    template <class... T>
+    void operator()(T&... values) {
+        (take(&values, sizeof values), ...);
+    }
+    template <class T, class Fields>
+    void list(Array<T>& list, Fields&& fields) {
+        uint32_t count = 0;
+        (*this)(count);
+        if (count > left_.size()) good_ = false;  // every item takes a byte at least
+        for (uint32_t i = 0; good_ && i < count; ++i) fields(*this, list.push_back(T{}));
+    }
+    bool good() const { return good_; }
+    bool at_end() const { return left_.empty(); }
+
+private:
+    void take(void* value, size_t size) {
+        if (size > left_.size()) good_ = false;
+        if (!good_) {
+            std::memset(value, 0, size);
+            return;
+        }
+        std::memcpy(value, left_.data(), size);
+        left_ = left_.subspan(size);
+    }
+    std::span<const uint8_t> left_;
+    bool good_ = true;
+};
+
+// Up to eight bools as one byte.
+template <class Bytes, class... Flag>
+void flags(Bytes& bytes, Flag&... flag) {
+    static_assert(sizeof...(Flag) <= 8);
+    uint8_t packed = 0;
+    int bit = 0;
+    ((packed |= static_cast<uint8_t>(flag ? 1 << bit : 0), ++bit), ...);
+    bytes(packed);
+    bit = 0;
+    ((flag = (packed >> bit & 1) != 0, ++bit), ...);
+}
+
+template <class Bytes>
+void slots(Bytes& bytes, SavedSlots& s) {
+    bytes(s.count, s.capacity);
+    bytes.list(s.free_list, [](Bytes& b, uint32_t& slot) { b(slot); });
+}
+
+template <class Bytes>
+void body(Bytes& bytes, SavedBody& b) {
+    flags(bytes, b.asleep, b.has_forces, b.placed, b.capped, b.contained, b.stopped, b.loaded, b.fixed);
+    if (b.fixed) return;
+    bytes(b.pose, b.still_time);
+    if (b.asleep) bytes(b.momenta.x_low);
+    else bytes(b.momenta, b.change);
+    if (b.has_forces) bytes(b.forces);
+    if (b.loaded) bytes(b.substeps, b.waited);
+}
+
+template <class Bytes>
+void joint(Bytes& bytes, SavedJoint& j) {
+    JointImpulses& i = j.impulses;
+    bytes(j.motor.target_velocity, j.motor.max_force);
+    bytes(i.linear, i.angular, i.limit, i.motor, i.spring, i.flags);
+    bytes(j.report.impulse, j.report.angular_impulse, j.report.h);
+}
+
+template <class Bytes>
+void pair(Bytes& bytes, SavedPair& p) {
+    bool cached = p.cache.feature != 0 || p.cache.clearance != 0.0f || p.cache.gjk.count > 0;
+    flags(bytes, p.hit, p.begun, p.kept, cached);
+    bytes(p.a, p.b, p.contacts);
+    if (cached) {
+        GjkCache& g = p.cache.gjk;
+        bytes(p.cache.feature, p.cache.clearance, g.count);
+        if (g.count > 0) bytes(g.direction);
+        for (int k = 0; k < g.count && k < 4; ++k) bytes(g.a[k], g.b[k]);
+    }
+    KeptPose& k = p.pose;
+    if (p.kept) bytes(k.rotation_a, k.rotation_b, k.offset, k.tolerance, k.clearance, k.feature);
+}
+
+// Friction and bounciness follow from the colliders; what stands of absent points does not matter.
+template <class Bytes>
+void contact(Bytes& bytes, SavedContact& c) {
+    ContactRecord& r = c.record;
+    uint8_t points = static_cast<uint8_t>(r.point_count);
+    bytes(points);
+    r.point_count = points;
+    bytes(r.normal, r.friction_impulse, r.twist_impulse, r.radius_a, r.radius_b, r.follow, r.arm_offset, r.key,
+          r.triangle);
+    for (int j = 0; j < 4; ++j) {
+        if (j < points) {
+            bytes(r.points[j], r.normal_impulse[j], r.id[j], c.found.s[j]);
+        } else if (Bytes::reading) {
+            r.points[j] = {{}, far_separation};
+            c.found.s[j] = far_separation;
+        }
+    }
+}
+
+template <class Bytes>
+void state(Bytes& bytes, SavedState& s) {
+    bytes(s.fingerprint, s.gravity, s.last_h, s.time, s.steps);
+    slots(bytes, s.body_slots);
+    slots(bytes, s.collider_slots);
+    slots(bytes, s.joint_slots);
+    bytes.list(s.bodies, body<Bytes>);
+    bytes.list(s.joints, joint<Bytes>);
+    bytes.list(s.pairs, pair<Bytes>);
+    bytes.list(s.contacts, contact<Bytes>);
+}
+
+Error bad(std::string what) { return {ErrorCode::bad_snapshot, "restore: " + std::move(what)}; }
+
+}  // namespace
+
+std::vector<uint8_t> encode(SavedState& saved) {
+    Writer writer;
+    writer.bytes.reserve(1024 + 160 * saved.bodies.size() + 80 * saved.pairs.size() + 200 * saved.contacts.size());
+    uint32_t number = version, size = 0;
+    writer(magic, number, size);
+    state(writer, saved);
+    size = static_cast<uint32_t>(writer.bytes.size() + checksum_bytes);
+    std::memcpy(writer.bytes.data() + sizeof magic + sizeof number, &size, sizeof size);
+    uint64_t sum = checksum(writer.bytes);
+    writer(sum);
+    return std::move(writer.bytes);
+}
+
+Status decode(std::span<const uint8_t> bytes, SavedState& saved) {
+    if (bytes.size() < sizeof magic || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
+        return bad("these bytes are no snapshot");
+    if (bytes.size() < header_bytes + checksum_bytes) return bad("the snapshot ends within its head");
+    uint32_t head[2];
+    std::memcpy(head, bytes.data() + sizeof magic, sizeof head);
+    if (head[0] != version)
+        return bad("the snapshot is of version " + std::to_string(head[0]) + ", this engine reads version " +
+                   std::to_string(version));
+    if (head[1] != bytes.size())
+        return bad("the snapshot has " + std::to_string(bytes.size()) + " bytes, should have " +
+                   std::to_string(head[1]));
+    std::span<const uint8_t> content = bytes.first(bytes.size() - checksum_bytes);
+    uint64_t sum;
+    std::memcpy(&sum, bytes.data() + content.size(), sizeof sum);
+    if (sum != checksum(content)) return bad("the snapshot does not match its checksum");
+    Reader reader(content.subspan(header_bytes));
+    state(reader, saved);
+    if (!reader.good() || !reader.at_end()) return bad("the snapshot's lists do not fit its size");
+    return {};
+}
+
+}  // namespace lendulet

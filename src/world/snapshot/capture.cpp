@@ -1,0 +1,124 @@
+// From a world to a saved state, and what tells worlds apart.
+#include "base/hash.h"
+#include "world/snapshot/saved_state.h"
+
+namespace lendulet {
+namespace {
+
+uint64_t mix(uint64_t h, Vec3 v) { return hash_floats(h, &v.x, 3); }
+uint64_t mix(uint64_t h, const Transform& t) {
+    const Quat& q = t.rotation;
+    float values[4] = {q.x, q.y, q.z, q.w};
+    return mix(hash_floats(h, values, 4), t.translation);
+}
+
+uint64_t mix_settings(uint64_t h, const WorldConfig& c) {
+    float speeds[2] = {c.rigid_separation_speed, c.static_separation_speed};
+    h = hash_floats(h, speeds, 2);
+    for (uint64_t word :
+         {static_cast<uint64_t>(c.solver_steps), static_cast<uint64_t>(c.simplex), static_cast<uint64_t>(c.integrator),
+          static_cast<uint64_t>(c.allow_sleep), static_cast<uint64_t>(c.continuous)})
+        h = hash_combine(h, word);
+    return h;
+}
+
+uint64_t mix_body(uint64_t h, const WorldData& world, uint32_t slot) {
+    const BodyInfo& info = world.bodies.info[slot];
+    const BodyMass& mass = world.bodies.mass[slot];
+    h = hash_combine(h, slot);
+    h = hash_combine(h, world.bodies.slots.uses(slot));
+    h = hash_combine(h, static_cast<uint64_t>(info.type));
+    h = mix(hash_floats(h, &mass.mass, 1), mass.inertia);
+    // Static bodies are not in the snapshot: they stand where they stand.
+    if (info.type == BodyType::fixed)
+        h = mix(h, Transform{from_origin(world.bodies.pose[slot].position), world.bodies.pose[slot].orientation});
+    for (uint32_t c = info.first_collider; c != no_slot; c = world.colliders.info[c].next) {
+        const ColliderInfo& collider = world.colliders.info[c];
+        const Surface& surface = world.colliders.surface[c];
+        float values[4] = {collider.radius, surface.static_friction, surface.dynamic_friction, surface.restitution};
+        h = hash_combine(h, c);
+        h = hash_combine(h, static_cast<uint64_t>(world.colliders.geometry[c].kind));
+        h = mix(hash_floats(h, values, 4), world.colliders.local[c]);
+        h = mix(h, world.colliders.geometry[c].size);
+    }
+    return h;
+}
+
+uint64_t mix_joint(uint64_t h, const WorldData& world, uint32_t slot) {
+    const JointInfo& joint = world.joints.info[slot];
+    for (uint64_t word : {uint64_t{slot}, uint64_t{world.joints.slots.uses(slot)}, static_cast<uint64_t>(joint.type),
+                          uint64_t{joint.body_a}, uint64_t{joint.body_b}})
+        h = hash_combine(h, word);
+    return mix(mix(h, joint.frame_a), joint.frame_b);
+}
+
+void capture_slots(const Slots& slots, SavedSlots& saved) {
+    saved.count = static_cast<uint32_t>(slots.count());
+    saved.capacity = static_cast<uint32_t>(slots.capacity());
+    saved.free_list.append(slots.free_list().data(), slots.free_list().size());
+}
+
+SavedBody capture_body(const WorldData& world, uint32_t slot) {
+    const BodyInfo& info = world.bodies.info[slot];
+    SavedBody b;
+    b.fixed = info.type == BodyType::fixed;
+    b.pose = world.bodies.pose[slot];
+    b.momenta = world.bodies.momenta[slot];
+    b.change = world.bodies.change[slot];
+    b.forces = world.bodies.forces[slot];
+    b.still_time = info.still_time;
+    b.asleep = info.asleep, b.has_forces = info.has_forces, b.placed = info.placed;
+    b.capped = info.capped, b.contained = info.contained, b.stopped = info.stopped;
+    if (slot < world.island_loads.size()) {
+        const IslandLoad& load = world.island_loads[slot];
+        b.loaded = load.step == world.steps && world.steps > 0;
+        b.substeps = load.substeps, b.waited = load.waited;
+    }
+    return b;
+}
+
+void capture_pair(const WorldData& world, const ColliderPair& p, SavedState& state) {
+    SavedPair s;
+    s.a = p.a, s.b = p.b;
+    s.contacts = p.count;
+    s.hit = p.hit, s.begun = p.begun;
+    s.cache = world.pairs.caches[p.cache];
+    s.pose = world.pairs.poses[p.cache];
+    s.kept = s.pose.clearance != unkept;
+    state.pairs.push_back(s);
+    for (uint32_t i = p.first_record; i < p.first_record + p.count; ++i)
+        state.contacts.push_back({world.records[i], world.found_separations[i]});
+}
+
+}  // namespace
+
+uint64_t fingerprint(const WorldData& world, uint32_t bodies, uint32_t joints) {
+    uint64_t h = mix_settings(0, world.config);
+    for (uint32_t i = 0; i < bodies; ++i) h = mix_body(h, world, world.bodies.slots.in_order(static_cast<int>(i)));
+    for (uint32_t i = 0; i < joints; ++i) h = mix_joint(h, world, world.joints.slots.in_order(static_cast<int>(i)));
+    return h;
+}
+
+void capture(const WorldData& world, SavedState& state) {
+    capture_slots(world.bodies.slots, state.body_slots);
+    capture_slots(world.colliders.slots, state.collider_slots);
+    capture_slots(world.joints.slots, state.joint_slots);
+    state.fingerprint = fingerprint(world, state.body_slots.count, state.joint_slots.count);
+    state.gravity = world.config.gravity;
+    state.last_h = world.last_h;
+    state.time = world.time;
+    state.steps = world.steps;
+    for (uint32_t slot : world.bodies.slots.order()) state.bodies.push_back(capture_body(world, slot));
+    for (uint32_t slot : world.joints.slots.order())
+        state.joints.push_back({world.joints.info[slot].motor, world.joints.impulses[slot], world.joints.report[slot]});
+    for (const ColliderPair& p : world.pairs.now)
+        if (p.cache != no_cache) capture_pair(world, p, state);
+}
+
+std::vector<uint8_t> World::snapshot() const {
+    SavedState state;
+    capture(*data_, state);
+    return encode(state);
+}
+
+}  // namespace lendulet

@@ -1,0 +1,216 @@
+// From bytes back to a world. Everything is checked before anything is changed.
+#include "world/narrow/manifold_records.h"
+#include "world/snapshot/saved_state.h"
+#include "world/validate.h"
+
+namespace lendulet {
+namespace {
+
+Error bad(const char* what) { return {ErrorCode::bad_snapshot, std::string("restore: the snapshot ") + what}; }
+
+bool is_unit(const float* v, int n) {
+    float sum = 0.0f;
+    for (int i = 0; i < n; ++i) sum += v[i] * v[i];
+    return sum > 0.99f && sum < 1.01f;
+}
+
+// Every slot there was is either one of the oldest `count` objects' or free, once.
+bool good_slots(const SavedSlots& s, const Slots& now) {
+    if (s.capacity > now.capacity() || uint64_t{s.count} + s.free_list.size() != s.capacity) return false;
+    std::vector<bool> seen(s.capacity, false);
+    for (uint32_t i = 0; i < s.capacity; ++i) {
+        uint32_t slot = i < s.count ? now.in_order(static_cast<int>(i)) : s.free_list[i - s.count];
+        if (slot >= s.capacity || seen[slot]) return false;
+        seen[slot] = true;
+    }
+    return true;
+}
+
+bool good_body(const SavedBody& b) {
+    const Quat& q = b.pose.orientation;
+    const float orientation[4] = {q.x, q.y, q.z, q.w};
+    return is_finite(from_origin(b.pose.position)) && is_unit(orientation, 4) && is_finite(b.momenta.p) &&
+           is_finite(b.momenta.L) && is_finite(b.momenta.p_low) && is_finite(b.momenta.x_low) &&
+           is_finite(b.change.v) && is_finite(b.change.L) && is_finite(b.forces.force) && is_finite(b.forces.torque) &&
+           is_finite(b.still_time) && b.substeps < substep_classes;
+}
+
+bool good_contact(const SavedContact& c) {
+    const ContactRecord& r = c.record;
+    if (r.point_count < 1 || r.point_count > 4 || !is_unit(r.normal, 3)) return false;
+    for (int j = 0; j < 4; ++j)
+        if (!(r.normal_impulse[j] >= 0.0f) || !is_finite(r.normal_impulse[j])) return false;
+    return true;
+}
+
+// Which of the world's colliders the snapshot knows, by slot.
+std::vector<bool> known_colliders(const WorldData& world, uint32_t bodies) {
+    std::vector<bool> known(world.colliders.slots.capacity(), false);
+    for (uint32_t i = 0; i < bodies; ++i) {
+        uint32_t slot = world.bodies.slots.in_order(static_cast<int>(i));
+        for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next)
+            known[c] = true;
+    }
+    return known;
+}
+
+int room_for_contacts(const WorldData& world, const SavedPair& p) {
+    const ColliderStore& c = world.colliders;
+    if (c.info[p.a].is_trigger || c.info[p.b].is_trigger) return 0;
+    bool mesh = c.geometry[p.a].kind == GeometryKind::mesh || c.geometry[p.b].kind == GeometryKind::mesh;
+    return mesh ? max_mesh_manifolds : 1;
+}
+
+Status check_pairs(const WorldData& world, const SavedState& state) {
+    const std::vector<bool> known = known_colliders(world, state.body_slots.count);
+    size_t contacts = 0;
+    const SavedPair* before = nullptr;
+    for (const SavedPair& p : state.pairs) {
+        bool sorted = p.a < p.b && (!before || before->a < p.a || (before->a == p.a && before->b < p.b));
+        if (!sorted || p.b >= known.size() || !known[p.a] || !known[p.b]) return bad("holds a pair that cannot be");
+        if (p.cache.gjk.count > 4 || p.contacts > room_for_contacts(world, p)) return bad("holds too many contacts");
+        contacts += p.contacts;
+        before = &p;
+    }
+    if (contacts != state.contacts.size()) return bad("holds contacts of no pair");
+    for (const SavedContact& c : state.contacts)
+        if (!good_contact(c)) return bad("holds a contact that cannot be");
+    return {};
+}
+
+void apply_body(WorldData& world, uint32_t slot, const SavedBody& b) {
+    BodyInfo& info = world.bodies.info[slot];
+    world.bodies.pose[slot] = b.pose;
+    world.bodies.momenta[slot] = b.momenta;
+    world.bodies.change[slot] = b.change;
+    world.bodies.forces[slot] = b.forces;
+    info.still_time = b.still_time;
+    info.asleep = b.asleep, info.has_forces = b.has_forces, info.placed = b.placed;
+    info.capped = b.capped, info.contained = b.contained, info.stopped = b.stopped;
+    IslandLoad load{};
+    load.step = b.loaded ? world.steps : 0;
+    load.parent = slot;
+    load.substeps = b.substeps, load.waited = b.waited;
+    world.island_loads[slot] = load;
+}
+
+// A sleeping body has not moved since the step before: its frames are where it is.
+void apply_frames(WorldData& world, uint32_t slot) {
+    for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next) {
+        world.colliders.update_place(c, world.bodies.pose[slot].orientation);
+        const Quat& q = world.colliders.place[c].rotation;
+        const Position& x = world.bodies.pose[slot].position;
+        ShapeFrame& f = world.frames[c];
+        f.rotation[0] = q.x, f.rotation[1] = q.y, f.rotation[2] = q.z, f.rotation[3] = q.w;
+        f.centre[0] = x.x, f.centre[1] = x.y, f.centre[2] = x.z;
+    }
+}
+
+void apply_bodies(WorldData& world, const SavedState& state) {
+    world.island_loads.resize(world.bodies.slots.capacity());
+    world.frames.resize(world.colliders.slots.capacity());
+    world.still.resize(world.frames.size());
+    size_t next = 0;
+    for (uint32_t slot : world.bodies.slots.order()) {
+        const SavedBody& saved = state.bodies[next++];
+        if (saved.fixed) world.bodies.info[slot].placed = saved.placed;
+        else apply_body(world, slot, saved);
+        apply_frames(world, slot);
+    }
+}
+
+void apply_joints(WorldData& world, const SavedState& state) {
+    size_t next = 0;
+    for (uint32_t slot : world.joints.slots.order()) {
+        const SavedJoint& joint = state.joints[next++];
+        world.joints.info[slot].motor = joint.motor;
+        world.joints.impulses[slot] = joint.impulses;
+        world.joints.report[slot] = joint.report;
+    }
+}
+
+void apply_pairs(WorldData& world, const SavedState& state) {
+    world.pairs.clear();
+    world.records.clear();
+    world.found_separations.clear();
+    const SavedContact* contact = state.contacts.data();
+    for (const SavedPair& saved : state.pairs) {
+        const uint32_t index = static_cast<uint32_t>(world.pairs.now.size());
+        ColliderPair& p = world.pairs.add(saved.a, saved.b);
+        begin_pair(world, p);
+        world.records.resize(world.pairs.record_count, ContactRecord{});
+        world.found_separations.resize(world.pairs.record_count, FoundSeparations{});
+        world.pairs.caches[p.cache] = saved.cache;
+        if (saved.kept) world.pairs.poses[p.cache] = saved.pose;
+        p.count = p.prepared = saved.contacts;
+        p.hit = saved.hit, p.begun = saved.begun;
+        for (uint32_t k = 0; k < p.count; ++k, ++contact) {
+            ContactRecord& r = world.records[p.first_record + k];
+            r = contact->record;
+            prepare_record(world, p, r);
+            r.pair = index;
+            world.found_separations[p.first_record + k] = contact->found;
+        }
+    }
+    list_contacts(world);
+}
+
+}  // namespace
+
+Status check_saved(const WorldData& world, const SavedState& state) {
+    bool slots = state.collider_slots.count <= static_cast<uint32_t>(world.colliders.slots.count()) &&
+                 good_slots(state.body_slots, world.bodies.slots) &&
+                 good_slots(state.collider_slots, world.colliders.slots) &&
+                 good_slots(state.joint_slots, world.joints.slots);
+    if (!slots) return bad("counts its bodies and joints wrongly");
+    if (state.bodies.size() != state.body_slots.count || state.joints.size() != state.joint_slots.count)
+        return bad("holds another number of bodies or joints than it says");
+    for (uint32_t i = 0; i < state.body_slots.count; ++i) {
+        uint32_t slot = world.bodies.slots.in_order(static_cast<int>(i));
+        if (state.bodies[i].fixed != (world.bodies.info[slot].type == BodyType::fixed))
+            return bad("takes a static body for a moving one");
+    }
+    if (!is_finite(state.gravity) || !(state.last_h >= 0.0f) || !is_finite(state.last_h) ||
+        !(state.time >= 0.0 && state.time < 1e300))
+        return bad("holds a time or a gravity that cannot be");
+    for (const SavedBody& b : state.bodies)
+        if (!b.fixed && !good_body(b)) return bad("holds a body whose state cannot be");
+    return check_pairs(world, state);
+}
+
+void apply(WorldData& world, const SavedState& state) {
+    world.bodies.slots.set_free_list(state.body_slots.free_list, state.body_slots.capacity);
+    world.colliders.slots.set_free_list(state.collider_slots.free_list, state.collider_slots.capacity);
+    world.joints.slots.set_free_list(state.joint_slots.free_list, state.joint_slots.capacity);
+    world.config.gravity = state.gravity;
+    world.last_h = state.last_h;
+    world.time = state.time;
+    world.steps = state.steps;
+    apply_bodies(world, state);
+    apply_joints(world, state);
+    apply_pairs(world, state);
+    world.fixed_changed = true;
+    world.query_scene.all_moved();
+}
+
+Status World::restore(std::span<const uint8_t> snapshot) {
+    WorldData& world = *data_;
+    if (world.in_step) return Error{ErrorCode::locked, "restore: called from inside a step"};
+    SavedState state;
+    if (Status s = decode(snapshot, state); !s) return s;
+    const auto bodies = static_cast<uint32_t>(body_count()), joints = static_cast<uint32_t>(joint_count());
+    if (state.body_slots.count > bodies || state.joint_slots.count > joints ||
+        state.fingerprint != fingerprint(world, state.body_slots.count, state.joint_slots.count))
+        return Error{ErrorCode::wrong_world, "restore: the snapshot is of " + std::to_string(state.body_slots.count) +
+                                                 " bodies and " + std::to_string(state.joint_slots.count) +
+                                                 " joints that are not in this world, or not all of them any more"};
+    if (Status s = check_saved(world, state); !s) return s;
+    while (joint_count() > static_cast<int>(state.joint_slots.count))
+        if (Status s = remove_joint(joint_id(joint_count() - 1)); !s) return s;
+    while (body_count() > static_cast<int>(state.body_slots.count))
+        if (Status s = remove_body(body(body_count() - 1)); !s) return s;
+    apply(world, state);
+    return {};
+}
+
+}  // namespace lendulet

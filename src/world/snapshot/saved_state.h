@@ -1,0 +1,78 @@
+// What a snapshot holds, between a world and its bytes: capture() and apply() translate from and to a world, encode()
+// and decode() from and to bytes. Shapes, masses and settings are not in it; a fingerprint of them is.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "world/world_data.h"
+
+namespace lendulet {
+
+// The slots of one kind of object: how many there are, and which come next.
+struct SavedSlots {
+    uint32_t count = 0;     // alive
+    uint32_t capacity = 0;  // ever made
+    Array<uint32_t> free_list;
+};
+
+struct SavedBody {
+    Pose pose;
+    BodyMomenta momenta{};
+    BodyChange change{};
+    BodyForces forces{};
+    float still_time = 0.0f;
+    bool fixed = false;  // a static body: nothing but `placed` is saved of it
+    bool asleep = false, has_forces = false, placed = false, capped = false, contained = false, stopped = false;
+    // Of the island that it was in: class of substeps, and how long fewer would have done.
+    bool loaded = false;
+    uint8_t substeps = 0, waited = 0;
+};
+
+struct SavedJoint {
+    Motor motor;
+    JointImpulses impulses;
+    JointReport report;
+};
+
+struct SavedContact {
+    ContactRecord record;
+    FoundSeparations found;
+};
+
+struct SavedPair {
+    uint32_t a = 0, b = 0;  // collider slots
+    uint8_t contacts = 0;   // of SavedState::contacts, in order
+    bool hit = false, begun = false;
+    PairCache cache;
+    bool kept = false;  // `pose` holds
+    KeptPose pose{};
+};
+
+struct SavedState {
+    uint64_t fingerprint = 0;
+    Vec3 gravity;
+    float last_h = 0.0f;
+    double time = 0.0;
+    uint64_t steps = 0;
+    SavedSlots body_slots, collider_slots, joint_slots;
+    Array<SavedBody> bodies;  // these two in creation order
+    Array<SavedJoint> joints;
+    Array<SavedPair> pairs;
+    Array<SavedContact> contacts;
+};
+
+// Hash of what the snapshot does not hold but depends on: settings, and the first bodies and joints by creation.
+uint64_t fingerprint(const WorldData& world, uint32_t bodies, uint32_t joints);
+
+void capture(const WorldData& world, SavedState& state);
+// Whether the state can be the world's: what apply() relies on. `state` is of the same fingerprint.
+Status check_saved(const WorldData& world, const SavedState& state);
+// Puts the checked state into the world, from which younger bodies and joints were removed.
+void apply(WorldData& world, const SavedState& state);
+
+std::vector<uint8_t> encode(SavedState& state);
+Status decode(std::span<const uint8_t> bytes, SavedState& state);
+
+}  // namespace lendulet

@@ -1,0 +1,208 @@
+/* Uses the C interface as a C program does. Each test returns null, or a sentence of what is wrong. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "lendulet/lendulet_c.h"
+
+const char* test_scenes(void);
+const char* test_run_is_reproducible(const char* scene, int steps, uint64_t* hash);
+const char* test_bodies_and_figures(void);
+const char* test_shapes(void);
+const char* test_picking_and_pulling(void);
+const char* test_snapshots(void);
+const char* test_refusals(void);
+
+#define TEXT(x) #x
+#define LINE(x) TEXT(x)
+#define EXPECT(condition) \
+    if (!(condition)) return "line " LINE(__LINE__) ": " #condition
+
+static const float at_rest[3] = {0.0f, 0.0f, 0.0f};
+
+static int run(lendulet_world* world, int steps) {
+    int i;
+    for (i = 0; i < steps; ++i)
+        if (lendulet_step(world) < 0) return 0;
+    return 1;
+}
+
+/* A floor with its top at y = 0. */
+static lendulet_world* with_floor(void) {
+    const float half[3] = {10.0f, 0.5f, 10.0f}, below[3] = {0.0f, -0.5f, 0.0f};
+    lendulet_world* world = lendulet_create_world(9.81f);
+    if (world && lendulet_add_fixed_box(world, half, below, NULL) < 0) return NULL;
+    return world;
+}
+
+const char* test_scenes(void) {
+    int i, found = 0;
+    EXPECT(lendulet_version() == LENDULET_C_VERSION);
+    for (i = 0; i < lendulet_scene_count(); ++i) {
+        EXPECT(strlen(lendulet_scene_name(i)) > 0);
+        EXPECT(strlen(lendulet_scene_description(i)) > 10);
+        if (strcmp(lendulet_scene_name(i), "box_pile") == 0) found = lendulet_scene_size(i);
+    }
+    EXPECT(found == 1000);
+    EXPECT(lendulet_scene_name(i) == NULL && lendulet_scene_name(-1) == NULL);
+    EXPECT(strcmp(lendulet_stage_name(0), "bounds") == 0 && lendulet_stage_name(LENDULET_STAGES) == NULL);
+    return NULL;
+}
+
+const char* test_run_is_reproducible(const char* scene, int steps, uint64_t* hash) {
+    lendulet_world* world = lendulet_create_scene(scene);
+    EXPECT(world != NULL);
+    EXPECT(lendulet_step_size(world) > 0.01f);
+    EXPECT(run(world, steps));
+    EXPECT(lendulet_step_count(world) == (uint64_t)steps);
+    EXPECT(fabs(lendulet_time(world) - steps * (double)lendulet_step_size(world)) < 1e-6);
+    *hash = lendulet_hash(world);
+    lendulet_destroy(world);
+    return NULL;
+}
+
+const char* test_bodies_and_figures(void) {
+    const float up[3] = {0.0f, 3.0f, 0.0f}, push[3] = {5.0f, 0.0f, 0.0f}, none[3] = {0.0f, 0.0f, 0.0f};
+    float gravity[3];
+    lendulet_body ball = 0;
+    const lendulet_pose* poses;
+    const lendulet_body* bodies;
+    const lendulet_contact* contacts;
+    lendulet_body_state state;
+    lendulet_statistics figures;
+    int i, points;
+    lendulet_world* world = with_floor();
+    EXPECT(world != NULL);
+    EXPECT(lendulet_add_sphere(world, 0.5f, up, at_rest, 1000.0f, &ball) == 0 && ball != 0);
+    EXPECT(lendulet_read_poses(world, &poses) == 2 && lendulet_read_bodies(world, &bodies) == 2);
+    EXPECT(bodies[1] == ball && poses[1].position[1] == 3.0f && poses[1].orientation[3] == 1.0f);
+    EXPECT(run(world, 1));
+    EXPECT(lendulet_read_poses(world, &poses) == 2 && poses[1].speed > 0.1f && poses[0].speed == 0.0f);
+    EXPECT(run(world, 60));
+    points = lendulet_read_contacts(world, &contacts);
+    EXPECT(points == 1 && fabsf(contacts[0].position[1]) < 0.02f && fabsf(fabsf(contacts[0].normal[1]) - 1.0f) < 1e-3f);
+    EXPECT(lendulet_read_body(world, ball, &state) == 0);
+    EXPECT(fabsf(state.mass - 523.6f) < 0.1f && state.type == LENDULET_DYNAMIC && state.name[0] == 0);
+    EXPECT(fabsf(state.position[1] - 0.5f) < 0.01f);
+    EXPECT(lendulet_apply_impulse(world, ball, push, state.centre_of_mass) == 0);
+    EXPECT(lendulet_read_body(world, ball, &state) == 0 && fabsf(state.momentum[0] - 5.0f) < 1e-3f);
+    EXPECT(lendulet_set_velocity(world, ball, up) == 0);
+    EXPECT(lendulet_read_body(world, ball, &state) == 0 && state.velocity[1] == 3.0f && !state.asleep);
+    EXPECT(lendulet_read_statistics(world, &figures) == 0);
+    EXPECT(figures.bodies == 2 && figures.contact_points == 1 && figures.total_ms > 0.0);
+    EXPECT(fabs(figures.kinetic_energy - 0.5 * 523.6 * 9.0) < 2.0);
+    EXPECT(lendulet_set_gravity(world, none) == 0 && lendulet_read_gravity(world, gravity) == 0 && gravity[1] == 0.0f);
+    EXPECT(run(world, 60));
+    EXPECT(lendulet_read_body(world, ball, &state) == 0 && state.position[1] > 2.5f);
+    EXPECT(lendulet_remove_body(world, ball) == 0);
+    EXPECT(lendulet_read_body(world, ball, &state) < 0 && strlen(lendulet_error()) > 10);
+    EXPECT(lendulet_read_bodies(world, &bodies) == 1);
+    EXPECT(lendulet_add_box(world, up, up, at_rest, 1.0f, NULL) < 0); /* a half extent of 0 */
+    for (i = 0; i < 3; ++i) gravity[i] = 1.0f;
+    EXPECT(lendulet_add_box(world, gravity, up, at_rest, 1.0f, &ball) == 0);
+    lendulet_destroy(world);
+    return NULL;
+}
+
+const char* test_shapes(void) {
+    const lendulet_collider* colliders;
+    lendulet_mesh mesh;
+    int i, k, count, hulls = 0, boxes = 0;
+    lendulet_world* world = lendulet_create_scene("mixed_pile:40");
+    EXPECT(world != NULL);
+    count = lendulet_read_colliders(world, &colliders);
+    EXPECT(count >= 45);
+    for (i = 0; i < count; ++i) {
+        const lendulet_collider c = colliders[i];
+        boxes += c.type == LENDULET_BOX && c.size[0] > 0.0f;
+        if (c.type != LENDULET_HULL) continue;
+        ++hulls;
+        EXPECT(lendulet_read_mesh(world, c.mesh, &mesh) == 0);
+        EXPECT(mesh.vertex_count >= 4 && mesh.triangle_count == 2 * mesh.vertex_count - 4); /* Euler */
+        for (k = 0; k < 3 * mesh.triangle_count; ++k) EXPECT(mesh.indices[k] < (uint32_t)mesh.vertex_count);
+    }
+    EXPECT(hulls == 10 && boxes >= 10);
+    EXPECT(lendulet_read_mesh(world, 1000, &mesh) < 0);
+    lendulet_destroy(world);
+    world = lendulet_create_scene("mesh_terrain:10");
+    EXPECT(world != NULL && lendulet_read_colliders(world, &colliders) == 11);
+    for (i = 0; colliders[i].type != LENDULET_MESH; ++i) EXPECT(i < 10);
+    EXPECT(lendulet_read_mesh(world, colliders[i].mesh, &mesh) == 0 && mesh.triangle_count == 100352);
+    lendulet_destroy(world);
+    return NULL;
+}
+
+const char* test_picking_and_pulling(void) {
+    const float start[3] = {0.0f, 0.5f, 0.0f}, half[3] = {0.5f, 0.5f, 0.5f};
+    const float above[3] = {0.2f, 8.0f, 0.1f}, down[3] = {0.0f, -20.0f, 0.0f}, aside[3] = {5.0f, 8.0f, 0.0f};
+    const float corner[3] = {0.5f, 1.0f, 0.5f}, target[3] = {2.0f, 4.0f, 0.0f};
+    float held[3];
+    lendulet_body box = 0;
+    lendulet_hit hit;
+    lendulet_body_state state;
+    int i;
+    lendulet_world* world = with_floor();
+    EXPECT(world != NULL && lendulet_add_box(world, half, start, at_rest, 100.0f, &box) == 0);
+    EXPECT(lendulet_cast_ray(world, above, down, &hit) == 1 && hit.body == box);
+    EXPECT(fabsf(hit.point[1] - 1.0f) < 1e-4f && hit.normal[1] > 0.999f && fabsf(hit.fraction - 0.35f) < 1e-4f);
+    EXPECT(lendulet_cast_ray(world, aside, down, &hit) == 1 && hit.body != box && hit.body != 0);
+    EXPECT(lendulet_grab(world, hit.body, hit.point) < 0); /* the floor */
+    EXPECT(lendulet_cast_ray(world, aside, above, &hit) == 0 && hit.body == 0);
+    EXPECT(lendulet_cast_ray(world, above, at_rest, &hit) < 0);
+
+    EXPECT(lendulet_read_grab(world, held) == 0 && lendulet_drag(world, target) < 0);
+    EXPECT(lendulet_grab(world, box, corner) == 0 && lendulet_drag(world, target) == 0);
+    EXPECT(run(world, 240));
+    EXPECT(lendulet_read_grab(world, held) == 1);
+    for (i = 0; i < 3; ++i) EXPECT(fabsf(held[i] - target[i]) < 0.1f); /* hangs there, a little lower */
+    lendulet_release(world);
+    EXPECT(lendulet_read_grab(world, held) == 0 && run(world, 240));
+    EXPECT(lendulet_read_body(world, box, &state) == 0 && state.position[1] < 0.8f);
+    lendulet_destroy(world);
+    return NULL;
+}
+
+const char* test_snapshots(void) {
+    static uint8_t kept[1 << 20];
+    const uint8_t* bytes;
+    const lendulet_body* bodies;
+    uint64_t there, later;
+    int size;
+    const float up[3] = {0.0f, 9.0f, 0.0f};
+    lendulet_world* world = lendulet_create_scene("wall_ball:4");
+    EXPECT(world != NULL && run(world, 20));
+    size = lendulet_read_snapshot(world, &bytes);
+    EXPECT(size > 100 && size < (int)sizeof kept);
+    memcpy(kept, bytes, (size_t)size);
+    there = lendulet_hash(world);
+    EXPECT(run(world, 30));
+    later = lendulet_hash(world);
+    EXPECT(lendulet_add_sphere(world, 0.3f, up, at_rest, 100.0f, NULL) == 0 && run(world, 10));
+    EXPECT(lendulet_restore(world, kept, (size_t)size) == 0);
+    EXPECT(lendulet_hash(world) == there && lendulet_step_count(world) == 20);
+    EXPECT(run(world, 30) && lendulet_hash(world) == later);
+    EXPECT(lendulet_restore(world, kept, (size_t)size - 1) < 0 && strstr(lendulet_error(), "bytes") != NULL);
+    EXPECT(lendulet_hash(world) == later && lendulet_read_bodies(world, &bodies) > 5);
+    lendulet_destroy(world);
+    return NULL;
+}
+
+const char* test_refusals(void) {
+    const float wrong[3] = {0.0f, NAN, 0.0f};
+    const lendulet_pose* poses;
+    lendulet_body_state state;
+    lendulet_world* world;
+    EXPECT(lendulet_create_scene("no_such_scene") == NULL && strstr(lendulet_error(), "no_such_scene") != NULL);
+    EXPECT(lendulet_create_scene(NULL) == NULL && lendulet_create_world(NAN) == NULL);
+    EXPECT(lendulet_step(NULL) < 0 && lendulet_read_poses(NULL, &poses) < 0 && lendulet_hash(NULL) == 0);
+    world = lendulet_create_world(10.0f);
+    EXPECT(world != NULL && lendulet_read_poses(world, NULL) < 0 && lendulet_read_poses(world, &poses) == 0);
+    EXPECT(lendulet_set_gravity(world, wrong) < 0 && strstr(lendulet_error(), "finite") != NULL);
+    EXPECT(lendulet_add_sphere(world, 0.5f, wrong, at_rest, 1.0f, NULL) < 0);
+    EXPECT(lendulet_add_sphere(world, -1.0f, at_rest, at_rest, 1.0f, NULL) < 0);
+    EXPECT(lendulet_read_body(world, 0, &state) < 0 && lendulet_remove_body(world, 12345) < 0);
+    EXPECT(lendulet_set_velocity(world, 0, at_rest) < 0 && lendulet_grab(world, 0, at_rest) < 0);
+    lendulet_destroy(world);
+    lendulet_destroy(NULL);
+    return NULL;
+}

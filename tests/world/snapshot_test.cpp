@@ -1,0 +1,247 @@
+// Snapshots: what comes after a restore is what came after the snapshot, to the last bit; bad bytes change nothing.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+
+#include "base/hash.h"
+#include "scenes/scene.h"
+#include "world/support.h"
+
+namespace lendulet::testing {
+namespace {
+
+void step(Scene& scene, int count) {
+    for (int i = 0; i < count; ++i) {
+        if (scene.before_step) scene.before_step(scene.world, static_cast<int>(scene.world.step_count()));
+        scene.world.update(scene.dt).value();
+    }
+}
+
+std::vector<uint64_t> hashes(Scene& scene, int count) {
+    std::vector<uint64_t> list;
+    for (int i = 0; i < count; ++i) step(scene, 1), list.push_back(scene.world.hash());
+    return list;
+}
+
+struct Stretch {
+    const char* scene;
+    int before, after;  // steps to the snapshot, and from there
+};
+void PrintTo(const Stretch& run, std::ostream* out) { *out << run.scene << " at " << run.before; }
+
+class Snapshots : public ::testing::TestWithParam<Stretch> {};
+
+TEST_P(Snapshots, TheRunAfterARestoreIsTheRunWithout) {
+    const Stretch& run = GetParam();
+    Scene scene = build_scene(run.scene).value();
+    step(scene, run.before);
+    const std::vector<uint8_t> saved = scene.world.snapshot();
+    const uint64_t hash = scene.world.hash();
+    const std::vector<uint64_t> expected = hashes(scene, run.after);
+    for (int round = 0; round < 2; ++round) {
+        Status restored = scene.world.restore(saved);
+        ASSERT_TRUE(restored.ok()) << restored.error().message;
+        EXPECT_EQ(scene.world.hash(), hash);
+        EXPECT_EQ(scene.world.step_count(), static_cast<uint64_t>(run.before));
+        EXPECT_EQ(scene.world.snapshot(), saved) << "a restored world gives the same bytes";
+        EXPECT_EQ(scene.world.check(), "");
+        ASSERT_EQ(hashes(scene, run.after), expected);
+    }
+}
+
+TEST_P(Snapshots, AWorldThatWasBuiltAlikeTakesThem) {
+    const Stretch& run = GetParam();
+    Scene scene = build_scene(run.scene).value();
+    step(scene, run.before);
+    const std::vector<uint8_t> saved = scene.world.snapshot();
+    const std::vector<uint64_t> expected = hashes(scene, run.after);
+    auto configure = [](WorldBuilder& b) { b.workers(2).width(4).broad_phase(BroadPhaseType::sweep_1); };
+    Scene other = build_scene(run.scene, configure).value();
+    Status restored = other.world.restore(saved);
+    ASSERT_TRUE(restored.ok()) << restored.error().message;
+    ASSERT_EQ(hashes(other, run.after), expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Snapshots,
+                         ::testing::Values(Stretch{"box_pile:60", 0, 40}, Stretch{"box_pile:60", 90, 60},
+                                           Stretch{"mixed_pile:80", 120, 60}, Stretch{"stack:8", 60, 120},
+                                           Stretch{"stack:30", 90, 60}, Stretch{"mass_ratio:1000", 60, 60},
+                                           Stretch{"ragdolls:3", 60, 60}, Stretch{"mesh_terrain:40", 120, 40},
+                                           Stretch{"tumbler:4", 90, 60}, Stretch{"newtons_cradle", 70, 60},
+                                           Stretch{"chain_heavy", 50, 60}, Stretch{"dominoes:20", 60, 60},
+                                           Stretch{"large_world_sleep:60", 150, 90}, Stretch{"wall_ball:6", 30, 60}));
+
+// Sleeping before, waking after: the contacts of sleepers are in the snapshot too.
+TEST(Snapshot, HoldsSleepersAndWhatWakesThem) {
+    World world = WorldBuilder{}.build().value();
+    add_floor(world);
+    std::vector<BodyId> stack = add_stack(world, 0.0f, 4);
+    run(world, 200);
+    ASSERT_TRUE(world.get(stack[0]).asleep());
+    const std::vector<uint8_t> asleep = world.snapshot();
+    auto strike = [&] {
+        run(world, 3);
+        world.get(stack[3]).apply_impulse({900.0f, 0.0f, 0.0f}).value();
+        run(world, 90);
+        return world.hash();
+    };
+    const uint64_t expected = strike();
+    world.restore(asleep).value();
+    EXPECT_TRUE(world.get(stack[0]).asleep());
+    EXPECT_EQ(world.contact_count(), 4);
+    EXPECT_EQ(strike(), expected);
+}
+
+TEST(Snapshot, HoldsGravityForcesMotorsAndOverlaps) {
+    World world = WorldBuilder{}.build().value();
+    BodyId floor = add_floor(world);
+    BodyId cube = add_cube(world, 0.0f, 3);
+    BodyId arm = add_cube(world, 4.0f, 1);
+    const ColliderDef gate[] = {{.shape = Box{{2.0f, 2.0f, 2.0f}}, .is_trigger = true}};
+    world.add_static_body({.position = {0.0f, 3.0f, 0.0f}, .colliders = gate}).value();
+    JointId hinge = world.add_joint(world.joint_at(JointType::hinge, floor, arm, {4.0f, 1.5f, 0.0f}).value()).value();
+    world.set_motor(hinge, {2.0f, 1e5f}).value();
+    run(world, 20);
+    world.get(cube).apply_force({5000.0f, 0.0f, 0.0f}).value();
+    const std::vector<uint8_t> saved = world.snapshot();
+    const size_t overlaps = world.overlaps().size();
+    ASSERT_GT(overlaps, 0u);
+    run(world, 30);
+    const uint64_t expected = world.hash();
+    world.set_gravity({0.0f, 3.0f, 0.0f}).value();
+    world.set_motor(hinge, {-5.0f, 1e5f}).value();
+    run(world, 40);
+    world.restore(saved).value();
+    EXPECT_EQ(world.config().gravity, (Vec3{0.0f, -9.81f, 0.0f}));
+    EXPECT_EQ(world.overlaps().size(), overlaps);
+    run(world, 30);
+    EXPECT_EQ(world.hash(), expected);
+}
+
+TEST(Snapshot, RemovesWhatWasAddedSinceAndNewBodiesGetTheSamePlaces) {
+    World world = WorldBuilder{}.build().value();
+    BodyId floor = add_floor(world);
+    std::vector<BodyId> stack = add_stack(world, 0.0f, 3);
+    world.remove_body(add_cube(world, 3.0f, 0)).value();
+    world.remove_body(add_cube(world, 5.0f, 0)).value();
+    run(world, 40);
+    const std::vector<uint8_t> saved = world.snapshot();
+    BodyId last{};
+    auto go_on = [&] {
+        const ColliderDef two[] = {{.shape = Box{{0.3f, 0.3f, 0.3f}}},
+                                   {.shape = Sphere{0.4f}, .local = {{0.0f, 0.5f, 0.0f}, {}}}};
+        for (int i = 0; i < 3; ++i)
+            last = world.add_rigid_body({.position = {0.1f, 4.0f + static_cast<float>(i), 0.0f}, .colliders = two})
+                       .value();
+        world.add_joint(world.joint_at(JointType::ball, stack[2], last, {0.0f, 4.0f, 0.0f}).value()).value();
+        run(world, 60);
+        return world.hash();
+    };
+    const uint64_t expected = go_on();
+    BodyId ball = last;
+    world.restore(saved).value();
+    EXPECT_FALSE(world.alive(ball));
+    EXPECT_EQ(world.body_count(), 4);
+    EXPECT_EQ(world.joint_count(), 0);
+    EXPECT_EQ(go_on(), expected);
+    EXPECT_FALSE(world.alive(ball)) << "the new body of its place is another one";
+
+    // One of the snapshot's own bodies is gone: nothing can bring it back.
+    world.remove_body(stack[1]).value();
+    const uint64_t hash = world.hash();
+    EXPECT_EQ(world.restore(saved).error().code, ErrorCode::wrong_world);
+    EXPECT_EQ(world.hash(), hash);
+    EXPECT_TRUE(world.alive(floor));
+}
+
+TEST(Snapshot, OfAnotherWorldIsRefused) {
+    World a = WorldBuilder{}.build().value(), b = WorldBuilder{}.build().value();
+    World more_steps = WorldBuilder{}.solver_steps(4).build().value();
+    for (World* w : {&a, &b, &more_steps}) add_floor(*w);
+    add_cube(a, 0.0f, 1);
+    b.add_rigid_body({.shape = Sphere{0.5f}, .position = {0.0f, 1.5f, 0.0f}}).value();
+    add_cube(more_steps, 0.0f, 1);
+    const std::vector<uint8_t> saved = a.snapshot();
+    for (World* w : {&b, &more_steps}) {
+        const uint64_t hash = w->hash();
+        EXPECT_EQ(w->restore(saved).error().code, ErrorCode::wrong_world);
+        EXPECT_EQ(w->hash(), hash);
+    }
+}
+
+// A small world in motion and its snapshot.
+struct Small {
+    World world = WorldBuilder{}.build().value();
+    std::vector<uint8_t> saved;
+    uint64_t hash;
+    Small() {
+        add_floor(world);
+        add_stack(world, 0.0f, 2);
+        world.add_rigid_body({.shape = octahedron(0.5f), .position = {0.2f, 2.6f, 0.1f}}).value();
+        run(world, 30);
+        saved = world.snapshot();
+        run(world, 10);
+        hash = world.hash();
+    }
+    // Like the engine's own: of all bytes but the last eight, which hold it.
+    static void seal(std::vector<uint8_t>& bytes) {
+        size_t size = bytes.size() - 8;
+        uint64_t sum = size;
+        for (size_t i = 0; i < size; i += 8) {
+            uint64_t word = 0;
+            std::memcpy(&word, bytes.data() + i, std::min<size_t>(8, size - i));
+            sum = hash_combine(sum, word);
+        }
+        std::memcpy(bytes.data() + size, &sum, 8);
+    }
+};
+
+TEST(Snapshot, TruncatedOrAlteredBytesChangeNothing) {
+    Small s;
+    for (size_t size = 0; size < s.saved.size(); ++size) {
+        Status restored = s.world.restore(std::span(s.saved).first(size));
+        ASSERT_FALSE(restored.ok()) << size << " bytes";
+        ASSERT_EQ(restored.error().code, ErrorCode::bad_snapshot);
+    }
+    for (size_t i = 0; i < s.saved.size(); ++i) {
+        std::vector<uint8_t> bytes = s.saved;
+        bytes[i] ^= 0x10;
+        ASSERT_FALSE(s.world.restore(bytes).ok()) << "byte " << i;
+    }
+    std::vector<uint8_t> longer = s.saved;
+    longer.push_back(0);
+    EXPECT_EQ(s.world.restore(longer).error().code, ErrorCode::bad_snapshot);
+    EXPECT_EQ(s.world.hash(), s.hash);
+    s.world.restore(s.saved).value();
+    run(s.world, 10);
+    EXPECT_EQ(s.world.hash(), s.hash);
+}
+
+// Bytes that pass the checksum but are nonsense are refused, or are a state that the world can go on from.
+TEST(Snapshot, SealedNonsenseDoesNoHarm) {
+    Small s;
+    int refused = 0;
+    for (size_t i = 16; i + 8 < s.saved.size(); ++i) {
+        std::vector<uint8_t> bytes = s.saved;
+        bytes[i] = static_cast<uint8_t>(bytes[i] ^ (i % 3 == 0 ? 0xff : 0x41));
+        Small::seal(bytes);
+        refused += !s.world.restore(bytes).ok();
+        if (i % 8 == 0) run(s.world, 1);
+    }
+    EXPECT_GT(refused, 50);
+    s.world.restore(s.saved).value();
+    run(s.world, 10);
+    EXPECT_EQ(s.world.hash(), s.hash);
+}
+
+TEST(Snapshot, IsSmall) {
+    Scene scene = build_scene("box_pile:200").value();
+    step(scene, 240);
+    const StepStatistics& s = scene.world.statistics();
+    const size_t bytes = scene.world.snapshot().size();
+    EXPECT_LT(bytes, 160u * 200u + 300u * static_cast<size_t>(s.pairs)) << s.pairs << " pairs";
+}
+
+}  // namespace
+}  // namespace lendulet::testing
