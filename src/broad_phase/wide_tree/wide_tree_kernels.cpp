@@ -1,6 +1,6 @@
 #include "broad_phase/wide_tree/wide_tree_kernels.h"
 
-#include "math/wide/cpu.h"
+#include "math/wide/instruction_sets.h"
 
 namespace lendulet {
 
