@@ -6,7 +6,8 @@ using namespace lendulet::c;
 
 namespace {
 
-thread_local std::string sentence;
+// Plain memory: a string would have to be destroyed at the end of each thread, which not every platform can.
+thread_local char sentence[512];
 
 const std::vector<SceneInfo>& scenes() {
     static const std::vector<SceneInfo> list = built_in_scenes();
@@ -27,7 +28,8 @@ lendulet_world* hand_out(Result<Scene> scene) {
 namespace lendulet::c {
 
 lendulet_result refuse(const Error& error) {
-    sentence = error.message;
+    size_t size = error.message.copy(sentence, sizeof sentence - 1);
+    sentence[size] = 0;
     return -1 - static_cast<lendulet_result>(error.code);
 }
 
@@ -44,7 +46,7 @@ lendulet_result refuse_body(const char* call) {
 extern "C" {
 
 uint32_t lendulet_version(void) { return LENDULET_C_VERSION; }
-const char* lendulet_error(void) { return sentence.c_str(); }
+const char* lendulet_error(void) { return sentence; }
 
 int32_t lendulet_scene_count(void) { return static_cast<int32_t>(scenes().size()); }
 // The names and sentences are literals, which end with a zero.

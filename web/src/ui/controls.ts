@@ -1,0 +1,110 @@
+// The page's buttons, fields and keys. Each control has one action; keys do what the controls do.
+import type { App } from "../app";
+import { type Colouring, colourings, dark, light } from "../view/theme";
+import { element } from "./dom";
+
+export function connect(app: App): void {
+    const button = (id: string, action: () => void) =>
+        element(id).addEventListener("click", () => app.guarded(action));
+    const canvas = app.stage.canvas, timeline = element<HTMLInputElement>("timeline");
+    const speed = element<HTMLSelectElement>("speed"), colours = element<HTMLSelectElement>("colours");
+    const keys = element<HTMLDialogElement>("keys");
+    // Where the pointer was last over the scene; balls and boxes go there, from buttons to the middle.
+    let aim: [number, number] | null = null;
+    const middle = (): [number, number] => {
+        const box = canvas.getBoundingClientRect();
+        return [box.left + box.width / 2, box.top + box.height / 2];
+    };
+    canvas.addEventListener("pointermove", (event) => (aim = [event.clientX, event.clientY]));
+    canvas.addEventListener("pointerleave", () => (aim = null));
+
+    const setColours = (how: Colouring) => {
+        colours.value = how;
+        app.setColours(how);
+    };
+    const setContacts = (on: boolean) => {
+        app.setContacts(on);
+        element("contacts").setAttribute("aria-pressed", String(on));
+    };
+    const setSpeed = (index: number) => {
+        speed.selectedIndex = Math.min(Math.max(index, 0), speed.options.length - 1);
+        app.player.timeScale = Number(speed.value);
+    };
+    const look = (index: number) => {
+        app.player.look(Math.max(index, 0));
+        timeline.value = String(index);
+    };
+    const back = () => look(Number(timeline.value) - 1);
+
+    button("restart", () => app.restart());
+    button("play", () => app.player.play(!app.player.playing));
+    button("step", () => app.player.step());
+    button("contacts", () => setContacts(!app.contacts));
+    button("shoot", () => app.shoot(...middle()));
+    button("drop", () => app.drop(...middle()));
+    button("theme", () => app.toggleTheme());
+    button("help", () => keys.showModal());
+    timeline.addEventListener("input", () => app.guarded(() => look(Number(timeline.value))));
+    speed.addEventListener("change", () => setSpeed(speed.selectedIndex));
+    colours.addEventListener("change", () => setColours(colours.value as Colouring));
+    element<HTMLInputElement>("size").addEventListener("change", (event) =>
+        app.guarded(() => app.setSize(Number((event.target as HTMLInputElement).value))));
+    colours.value = app.colours;
+    element("contacts").setAttribute("aria-pressed", String(app.contacts));
+
+    const actions: Record<string, () => void> = {
+        " ": () => app.player.play(!app.player.playing),
+        ArrowRight: () => app.player.step(),
+        ArrowLeft: back,
+        r: () => app.restart(),
+        b: () => app.shoot(...(aim ?? middle())),
+        x: () => app.drop(...(aim ?? middle())),
+        c: () => setContacts(!app.contacts),
+        f: () => app.lookAtAll(),
+        d: () => app.toggleTheme(),
+        "[": () => setSpeed(speed.selectedIndex - 1),
+        "]": () => setSpeed(speed.selectedIndex + 1),
+        "?": () => keys.showModal(),
+        Escape: () => app.pick(null),
+    };
+    colourings.forEach((how, i) => (actions[String(i + 1)] = () => setColours(how)));
+    window.addEventListener("keydown", (event) => {
+        const target = event.target as HTMLElement;
+        const typing = target.closest("input:not([type=range]), select, dialog");
+        if (typing || event.ctrlKey || event.metaKey || event.altKey) return;
+        // Buttons and the timeline keep the keys that are theirs.
+        if (event.key === " " && target.closest("button, a")) return;
+        if (event.key.startsWith("Arrow") && target === timeline) return;
+        const action = actions[event.key] ?? actions[event.key.toLowerCase()];
+        if (!action) return;
+        event.preventDefault();
+        app.guarded(action);
+    });
+
+    sheets();
+    const system = matchMedia("(prefers-color-scheme: dark)");
+    app.setTheme(system.matches ? dark : light);
+    system.addEventListener("change", () => app.setTheme(system.matches ? dark : light));
+}
+
+// Panels that are sheets on narrow windows.
+function sheets(): void {
+    for (const id of ["scenes", "figures"]) {
+        const panel = element(id), opener = element(`open-${id}`);
+        const show = (open: boolean) => {
+            panel.classList.toggle("open", open);
+            opener.setAttribute("aria-expanded", String(open));
+            if (open) panel.querySelector<HTMLElement>(".close")!.focus();
+        };
+        opener.addEventListener("click", () => show(!panel.classList.contains("open")));
+        panel.querySelector(".close")!.addEventListener("click", () => {
+            show(false);
+            opener.focus();
+        });
+        // A chosen scene is to be seen.
+        panel.addEventListener("click", (event) => {
+            if ((event.target as HTMLElement).closest("a")) show(false);
+        });
+        element("canvas").addEventListener("pointerdown", () => show(false));
+    }
+}

@@ -1,0 +1,37 @@
+// The scene and the view in the page's address: #scene=box_pile:600&colours=speed&view=…
+import type * as THREE from "three";
+import type { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+export interface Link {
+    scene?: string;
+    colours?: string;
+    contacts?: boolean;
+    paused?: boolean;
+    view?: number[]; // camera and target, m
+}
+
+export function readLink(): Link {
+    const values = new URLSearchParams(location.hash.slice(1));
+    const view = values.get("view")?.split(",").map(Number);
+    return {
+        scene: values.get("scene") ?? undefined,
+        colours: values.get("colours") ?? undefined,
+        contacts: values.get("contacts") === "1",
+        paused: values.get("paused") === "1",
+        view: view?.length === 6 && view.every(Number.isFinite) ? view : undefined,
+    };
+}
+
+export function viewOf(camera: THREE.Camera, controls: OrbitControls): number[] {
+    return [...camera.position.toArray(), ...controls.target.toArray()].map((v) => Number(v.toPrecision(4)));
+}
+
+// Replaces the address without a new entry in the browser's history.
+export function writeLink(link: Link): void {
+    const parts = [`scene=${link.scene ?? ""}`];
+    if (link.colours && link.colours !== "body") parts.push(`colours=${link.colours}`);
+    if (link.contacts) parts.push("contacts=1");
+    if (link.view) parts.push(`view=${link.view.join(",")}`);
+    const hash = "#" + parts.join("&");
+    if (location.hash !== hash) history.replaceState(null, "", hash);
+}

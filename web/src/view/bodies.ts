@@ -1,0 +1,185 @@
+// All colliders as instanced meshes: one for each geometry. Poses between two steps are interpolated here.
+import * as THREE from "three";
+import { BodyType, type Collider, poseStride, ShapeType, type World } from "../engine/engine";
+import { modelOf } from "./geometry";
+import { bodyMaterial, glassMaterial, groundMaterial } from "./materials";
+import { type Colouring, colourOf, driven, highlight } from "./theme";
+
+interface Batch {
+    mesh: THREE.InstancedMesh;
+    colliders: Collider[];
+    scales: THREE.Vector3[];
+    locals: (THREE.Matrix4 | null)[]; // pose on the body; null: the body's own
+    reaches: number[]; // rough sizes, m; infinite: ground without end
+    fixed: boolean;
+}
+
+// How colliders are drawn: what moves, what it stands on, and containers, into which one must see.
+type Kind = "body" | "ground" | "glass";
+
+function kindOf(c: Collider, type: BodyType, parts: number): Kind {
+    if (type === BodyType.kinematic) return parts > 2 ? "glass" : "body";
+    if (type === BodyType.dynamic) return "body";
+    const wall = c.type === ShapeType.box && c.size[1] > 1.5 * Math.min(c.size[0], c.size[2]);
+    return wall ? "glass" : "ground";
+}
+// Ground takes shadows; only what stands on it casts them.
+function isSmall(c: Collider): boolean {
+    return c.type !== ShapeType.plane && c.type !== ShapeType.mesh && Math.max(...c.size) < 40;
+}
+
+const one = new THREE.Vector3(1, 1, 1);
+
+export class Bodies {
+    readonly group = new THREE.Group();
+    // Of what moves, and of what is drawn of the rest, at the last rebuild.
+    readonly bounds = new THREE.Box3();
+    private batches: Batch[] = [];
+    private types: BodyType[] = [];
+    private readonly geometries = new Map<string, THREE.BufferGeometry>(); // by ShapeModel.key
+
+    // Anew from the world's colliders. `other`: of another scene, whose surfaces must be read again.
+    build(world: World, other: boolean): void {
+        this.clear();
+        if (other) {
+            for (const geometry of this.geometries.values()) geometry.dispose();
+            this.geometries.clear();
+        }
+        this.types = Array.from(world.bodies(), (number) => number).map((n) => world.body(n)?.type ?? BodyType.fixed);
+        const colliders = world.colliders(), batches = new Map<string, [Kind, Collider[]]>();
+        const parts = new Map<number, number>(); // colliders by body
+        for (const { body } of colliders) parts.set(body, (parts.get(body) ?? 0) + 1);
+        for (const c of colliders) {
+            if (c.trigger) continue;
+            const kind = kindOf(c, this.types[c.body], parts.get(c.body)!);
+            const key = `${kind} ${modelOf(c)?.key ?? "plane"}`;
+            if (!batches.has(key)) batches.set(key, [kind, []]);
+            batches.get(key)![1].push(c);
+        }
+        for (const [kind, list] of batches.values()) this.add(world, list, kind);
+    }
+
+    private add(world: World, colliders: Collider[], kind: Kind): void {
+        const fixed = this.types[colliders[0].body] === BodyType.fixed;
+        const model = modelOf(colliders[0]);
+        const key = model?.key ?? "plane";
+        let geometry = this.geometries.get(key);
+        if (!geometry) {
+            geometry = model ? model.make((mesh) => world.surface(mesh)) : new THREE.PlaneGeometry(2e3, 2e3);
+            this.geometries.set(key, geometry);
+        }
+        const material = { ground: groundMaterial, glass: glassMaterial, body: bodyMaterial }[kind]();
+        const mesh = new THREE.InstancedMesh(geometry, material, colliders.length);
+        mesh.instanceMatrix.setUsage(fixed ? THREE.StaticDrawUsage : THREE.DynamicDrawUsage);
+        mesh.frustumCulled = false; // bounds change with every step
+        mesh.receiveShadow = kind !== "glass";
+        mesh.castShadow = kind === "body" || (kind === "ground" && colliders.every(isSmall));
+        const white = new THREE.Color(1, 1, 1);
+        for (let i = 0; i < colliders.length; ++i) mesh.setColorAt(i, white);
+        const locals = colliders.map((c) => {
+            if (c.type === ShapeType.plane) return planeMatrix(c);
+            const [x, y, z, w] = c.orientation;
+            if (!c.position.some((v) => v !== 0) && w === 1) return null;
+            return new THREE.Matrix4().compose(
+                new THREE.Vector3(...c.position), new THREE.Quaternion(x, y, z, w), one);
+        });
+        const scales = colliders.map((c) => new THREE.Vector3(...(modelOf(c)?.scale ?? [1, 1, 1])));
+        const reaches = colliders.map((c) => (c.type === ShapeType.plane ? Infinity : 0.8 * Math.max(...c.size)));
+        this.batches.push({ mesh, colliders, scales, locals, reaches, fixed });
+        this.group.add(mesh);
+    }
+
+    clear(): void {
+        for (const { mesh } of this.batches) {
+            this.group.remove(mesh);
+            (mesh.material as THREE.Material).dispose();
+            mesh.dispose();
+        }
+        this.batches = [];
+    }
+
+    private readonly matrix = new THREE.Matrix4();
+    private readonly position = new THREE.Vector3();
+    private readonly rotation = new THREE.Quaternion();
+    private readonly colour = new THREE.Color();
+
+    // `share` of the way from `before` to `now`; bodies that are in only one of them are drawn where they are in `now`,
+    // or not at all. `all`: static bodies too.
+    place(before: Float32Array, now: Float32Array, share: number, all: boolean): void {
+        const there = now.length / poseStride, both = Math.min(there, before.length / poseStride);
+        for (const batch of this.batches) {
+            if (batch.fixed && !all) continue;
+            const array = batch.mesh.instanceMatrix.array as Float32Array;
+            for (let i = 0; i < batch.colliders.length; ++i) {
+                const body = batch.colliders[i].body;
+                if (body >= there) {
+                    array.fill(0, 16 * i, 16 * i + 16);
+                    continue;
+                }
+                this.blend(body < both ? before : now, now, poseStride * body, share);
+                this.matrix.compose(this.position, this.rotation, batch.locals[i] ? one : batch.scales[i]);
+                const local = batch.locals[i];
+                if (local) this.matrix.multiply(local).scale(batch.scales[i]);
+                this.matrix.toArray(array, 16 * i);
+            }
+            batch.mesh.instanceMatrix.needsUpdate = true;
+        }
+    }
+
+    // Quaternions by their normalised mean: within a step bodies turn little.
+    private blend(a: Float32Array, b: Float32Array, at: number, t: number): void {
+        const s = 1 - t;
+        this.position.set(
+            s * a[at] + t * b[at], s * a[at + 1] + t * b[at + 1], s * a[at + 2] + t * b[at + 2]);
+        const q = at + 4;
+        const dot = a[q] * b[q] + a[q + 1] * b[q + 1] + a[q + 2] * b[q + 2] + a[q + 3] * b[q + 3];
+        const u = dot < 0 ? -s : s;
+        this.rotation.set(
+            u * a[q] + t * b[q], u * a[q + 1] + t * b[q + 1], u * a[q + 2] + t * b[q + 2],
+            u * a[q + 3] + t * b[q + 3]);
+        this.rotation.normalize();
+    }
+
+    paint(how: Colouring, poses: Float32Array, selected: number, ground: number): void {
+        for (const { mesh, colliders, fixed } of this.batches) {
+            const array = mesh.instanceColor!.array as Float32Array;
+            for (let i = 0; i < colliders.length; ++i) {
+                const body = colliders[i].body;
+                if (fixed) this.colour.setHex(ground);
+                else if (this.types[body] === BodyType.kinematic) this.colour.copy(driven);
+                else colourOf(this.colour, how, body, poses[poseStride * body + 3] ?? 0);
+                if (body === selected) highlight(this.colour);
+                this.colour.toArray(array, 3 * i);
+            }
+            mesh.instanceColor!.needsUpdate = true;
+        }
+    }
+
+    // Bounds of what moves; of everything where nothing does. Shapes without end are left out.
+    measure(poses: Float32Array): THREE.Box3 {
+        const { min, max } = this.bounds.makeEmpty();
+        for (const movingOnly of [true, false]) {
+            for (const { colliders, reaches, fixed } of this.batches) {
+                if (movingOnly && fixed) continue;
+                for (let i = 0; i < colliders.length; ++i) {
+                    const c = colliders[i], at = poseStride * c.body, reach = reaches[i];
+                    if (at >= poses.length || !Number.isFinite(reach)) continue;
+                    // Colliders on moving bodies are near enough to their bodies' origins.
+                    const x = poses[at] + (fixed ? c.position[0] : 0), y = poses[at + 1] + (fixed ? c.position[1] : 0);
+                    const z = poses[at + 2] + (fixed ? c.position[2] : 0);
+                    min.set(Math.min(min.x, x - reach), Math.min(min.y, y - reach), Math.min(min.z, z - reach));
+                    max.set(Math.max(max.x, x + reach), Math.max(max.y, y + reach), Math.max(max.z, z + reach));
+                }
+            }
+            if (!this.bounds.isEmpty()) break;
+        }
+        return this.bounds;
+    }
+}
+
+// A square of the plane around the point that is nearest to the body's origin.
+function planeMatrix(c: Collider): THREE.Matrix4 {
+    const normal = new THREE.Vector3(c.size[0], c.size[1], c.size[2]);
+    const turn = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, 1), normal);
+    return new THREE.Matrix4().compose(normal.clone().multiplyScalar(c.size[3]), turn, one);
+}

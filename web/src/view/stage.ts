@@ -1,0 +1,134 @@
+// The stage: renderer, camera, light and what stands around the bodies.
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { gridColour } from "./materials";
+import type { Theme } from "./theme";
+
+export class Stage {
+    readonly scene = new THREE.Scene();
+    readonly camera = new THREE.PerspectiveCamera(42, 1, 0.05, 5000);
+    readonly controls: OrbitControls;
+    private readonly renderer: THREE.WebGLRenderer;
+    private readonly sun = new THREE.DirectionalLight();
+    private readonly sky = new THREE.HemisphereLight();
+    private readonly sunDirection = new THREE.Vector3(0.45, 1, 0.35).normalize();
+    private size = [0, 0];
+
+    constructor(readonly canvas: HTMLCanvasElement, shadowSize: number) {
+        this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+        this.renderer.shadowMap.enabled = shadowSize > 0;
+        this.renderer.shadowMap.type = THREE.PCFShadowMap;
+        this.renderer.toneMapping = THREE.NeutralToneMapping;
+        this.controls = new OrbitControls(this.camera, canvas);
+        this.controls.enableDamping = true;
+        this.controls.dampingFactor = 0.12;
+        this.controls.maxPolarAngle = Math.PI * 0.97;
+        this.controls.zoomToCursor = true;
+        this.sun.castShadow = shadowSize > 0;
+        this.sun.shadow.mapSize.set(shadowSize || 1, shadowSize || 1);
+        this.sun.shadow.radius = 3.5;
+        this.sun.shadow.normalBias = 0.03;
+        this.sun.shadow.bias = -0.0002;
+        this.scene.add(this.sky, this.sun, this.sun.target);
+    }
+
+    apply(theme: Theme): void {
+        this.scene.background = new THREE.Color(theme.sky);
+        this.scene.fog = new THREE.Fog(theme.sky, 100, 500);
+        this.sun.color.setHex(theme.sun);
+        this.sun.intensity = theme.sunStrength;
+        this.sky.color.setHex(theme.hemisphere[0]);
+        this.sky.groundColor.setHex(theme.hemisphere[1]);
+        this.sky.intensity = theme.hemisphere[2];
+        gridColour.value.setHex(theme.line);
+        this.setReach(this.reach);
+    }
+
+    private reach = 10;
+    private setReach(reach: number): void {
+        this.reach = reach;
+        const fog = this.scene.fog as THREE.Fog | null;
+        if (fog) {
+            fog.near = 12 * reach;
+            fog.far = 45 * reach;
+        }
+        this.camera.near = reach / 300;
+        this.camera.far = 120 * reach;
+        this.camera.updateProjectionMatrix();
+    }
+
+    // Looks at what lies within the bounds, from a little above.
+    frame(bounds: THREE.Box3): void {
+        const sphere = bounds.getBoundingSphere(new THREE.Sphere());
+        const radius = Math.min(Math.max(sphere.radius, 1.2), 400);
+        this.setReach(radius);
+        const half = (this.camera.fov * Math.PI) / 360;
+        const narrow = Math.atan(Math.tan(half) * Math.min(this.camera.aspect, 1));
+        const distance = (0.84 * radius) / Math.sin(narrow);
+        this.controls.target.copy(sphere.center);
+        this.camera.position
+            .set(0.62, 0.42, 1)
+            .normalize()
+            .multiplyScalar(distance)
+            .add(sphere.center);
+        this.controls.minDistance = radius / 40;
+        this.controls.maxDistance = 12 * radius;
+        this.controls.update();
+    }
+
+    // Shadows fall around what moves.
+    light(bounds: THREE.Box3): void {
+        if (bounds.isEmpty()) return;
+        const sphere = bounds.getBoundingSphere(new THREE.Sphere());
+        const radius = Math.min(Math.max(sphere.radius * 1.15, 3), 6 * this.reach);
+        const shadow = this.sun.shadow.camera;
+        // In coarse steps, so that shadows' edges do not crawl with every step.
+        const coarse = 2 ** (Math.ceil(Math.log2(radius) * 2) / 2);
+        const centre = sphere.center.clone().divideScalar(coarse / 8).round().multiplyScalar(coarse / 8);
+        this.sun.target.position.copy(centre);
+        this.sun.position.copy(centre).addScaledVector(this.sunDirection, 3 * coarse);
+        shadow.left = shadow.bottom = -coarse;
+        shadow.right = shadow.top = coarse;
+        shadow.near = 0.5 * coarse;
+        shadow.far = 6 * coarse;
+        shadow.updateProjectionMatrix();
+        this.sun.target.updateMatrixWorld();
+    }
+
+    render(): void {
+        const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+        const ratio = Math.min(window.devicePixelRatio, 2);
+        if (width !== this.size[0] || height !== this.size[1] || ratio !== this.renderer.getPixelRatio()) {
+            this.size = [width, height];
+            this.renderer.setPixelRatio(ratio);
+            this.renderer.setSize(width, height, false);
+            this.camera.aspect = width / Math.max(height, 1);
+            this.camera.updateProjectionMatrix();
+        }
+        this.controls.update();
+        this.renderer.render(this.scene, this.camera);
+    }
+
+    // The ray through a point of the page.
+    ray(x: number, y: number): THREE.Ray {
+        const box = this.canvas.getBoundingClientRect();
+        const at = new THREE.Vector2(
+            (2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height);
+        const caster = new THREE.Raycaster();
+        caster.setFromCamera(at, this.camera);
+        return caster.ray;
+    }
+    // Where a point of the world is seen on the page.
+    project(point: readonly number[]): [number, number] {
+        const box = this.canvas.getBoundingClientRect();
+        this.camera.updateMatrixWorld();
+        const p = new THREE.Vector3(point[0], point[1], point[2]).project(this.camera);
+        return [box.left + (0.5 + 0.5 * p.x) * box.width, box.top + (0.5 - 0.5 * p.y) * box.height];
+    }
+    get far(): number {
+        return this.camera.far;
+    }
+    get span(): number {
+        return this.reach;
+    }
+}

@@ -1,0 +1,58 @@
+// Tests of the page in a real browser: node test/run.mjs FOLDER [IMAGES]
+// FOLDER: the built page. IMAGES: where pictures are written to; without it they are only looked at.
+// CHROMIUM in the environment names another browser than /usr/bin/chromium.
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { join, resolve } from "node:path";
+import { chromium } from "playwright-core";
+import { checks } from "./checks.mjs";
+import { serve } from "./server.mjs";
+
+const [folder, images] = process.argv.slice(2);
+if (!folder) {
+    console.error("usage: node test/run.mjs FOLDER [IMAGES]");
+    process.exit(2);
+}
+const server = await serve(resolve(folder));
+const browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
+        "--disable-component-update", "--disable-sync"],
+});
+const native = JSON.parse(readFileSync(join(folder, "native-hashes.json"), "utf8"));
+if (images) mkdirSync(images, { recursive: true });
+
+const problems = [];
+// A page in which every error and every request that leaves the machine is a failure.
+async function open(options = {}, address = "?shadows=0") {
+    const context = await browser.newContext({ viewport: { width: 640, height: 400 }, ...options });
+    const page = await context.newPage();
+    page.on("pageerror", (error) => problems.push(`error in the page: ${error.message}`));
+    page.on("console", (entry) => entry.type() === "error" && problems.push(`the page says: ${entry.text()}`));
+    page.on("request", (request) => {
+        if (!/^(http:\/\/127\.0\.0\.1:|data:|blob:)/.test(request.url())) problems.push(`asks for ${request.url()}`);
+    });
+    await page.goto(server.url + address);
+    await page.waitForFunction(() => window.lendulet !== undefined, null, { timeout: 60000 });
+    return page;
+}
+
+const tools = { open, native, save: (name, bytes) => images && writeFileSync(join(images, name), bytes) };
+let failed = 0;
+for (const [name, check] of Object.entries(checks)) {
+    const start = Date.now();
+    const took = () => `${((Date.now() - start) / 1000).toFixed(1).padStart(5)} s  ${name}`;
+    problems.length = 0;
+    try {
+        await check(tools);
+        if (problems.length > 0) throw new Error(problems.join("\n"));
+        console.log(`ok      ${took()}`);
+    } catch (error) {
+        ++failed;
+        console.log(`FAILED  ${took()}\n${error.stack ?? error}`);
+    }
+    for (const context of browser.contexts()) await context.close();
+}
+await browser.close();
+server.close();
+if (failed > 0) console.log(`${failed} of ${Object.keys(checks).length} failed`);
+process.exit(failed > 0 ? 1 : 0);
