@@ -79,6 +79,7 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       overlaps(&memory),
       active_joints(&memory),
       joint_records(&memory),
+      joint_bodies(&memory),
       awake(&memory),
       solver_bodies(&memory),
       island_loads(&memory),
@@ -233,7 +234,7 @@ uint64_t World::hash() const {
         h = hash_floats(h, r.friction_impulse, 3);
         h = hash_floats(h, &r.twist_impulse, 1);
     }
-    return world.joints.hash(h);
+    return hash_joints(world, h);
 }
 
 }  // namespace lendulet

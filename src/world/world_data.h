@@ -14,7 +14,7 @@
 #include "lendulet/world.h"
 #include "solver/bodies.h"
 #include "solver/contact.h"
-#include "solver/joint.h"
+#include "solver/joints/joint.h"
 #include "solver/solver.h"
 #include "world/continuous.h"
 #include "world/narrow/kernels.h"
@@ -89,8 +89,12 @@ struct WorldData {
     Array<uint32_t> active;  // those of them that are solved, by class of substeps: at least one body awake
     Array<uint32_t> unsorted;
     Array<Overlap> overlaps;
-    Array<uint32_t> active_joints;  // slots of the joints that are solved, in creation order
+    // Joints that are solved, kept while they and the awake bodies stay the same.
+    Array<uint32_t> active_joints;  // slots, in creation order
     Array<JointRecord> joint_records;
+    Array<uint32_t> joint_bodies;  // the awake bodies that the records name, ...
+    int joint_bodies_end = 0;      // ... and the end of their part of the packed ones
+    bool joints_changed = true;    // a joint came, went or was set
 
     // This step's awake bodies, packed for the solver.
     Array<uint32_t> awake;  // slots, by class of substeps and then in order of slots
@@ -119,9 +123,9 @@ void update_islands(WorldData& world, float dt);
 void choose_substeps(WorldData& world, float dt);
 void pack_bodies(WorldData& world, float dt);
 void pack_contacts(WorldData& world);
-void pack_joints(WorldData& world, float h);
+// Returns what the solver may keep of the last step.
+JointReuse pack_joints(WorldData& world, float h);
 void unpack_contacts(WorldData& world);
-void unpack_joints(WorldData& world, float h);
 void unpack_bodies(WorldData& world, float dt, bool forces_end);
 void remember_poses(WorldData& world);
 void stop_at_impacts(WorldData& world, float dt);
@@ -130,6 +134,8 @@ void finish_step(WorldData& world, float dt);
 // 0 .. substep_classes - 1, for a body that is about to be packed; after choose_substeps().
 int substep_class(WorldData& world, uint32_t slot);
 
+// Mixes all warm-start impulses of joints into a hash, in creation order.
+uint64_t hash_joints(const WorldData& world, uint64_t start);
 // Removes the joints of a body that is about to be removed.
 void remove_joints_of(WorldData& world, uint32_t body);
 
