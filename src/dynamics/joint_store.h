@@ -65,6 +65,12 @@ struct JointStore {
     uint32_t first_of(uint32_t body) const {
         return body < first_.size() && first_[body] != no_joint_link ? first_[body] / 2 : no_joint_link;
     }
+    // Calls use(joint) for every joint of a body, youngest first.
+    template <class Use>
+    void for_each_of(uint32_t body, Use&& use) const {
+        if (body >= first_.size()) return;
+        for (uint32_t link = first_[body]; link != no_joint_link; link = next_[link]) use(link / 2);
+    }
     // Whether a joint between these bodies keeps their colliders from meeting. Cost: the joints of
     // the body that has fewer.
     bool keeps_apart(uint32_t a, uint32_t b) const;

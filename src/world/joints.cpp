@@ -172,6 +172,19 @@ void put_impulses(JointRecord& r, const JointImpulses& i, float scale) {
     r.flags = i.flags;
 }
 
+// The part of a body whose place among the packed ones is known.
+int part_of(const WorldData& world, int32_t solver_body) {
+    int c = 0;
+    while (solver_body >= world.parts[c].bodies.end) ++c;
+    return c;
+}
+// One over the multiple of the setting's substeps that a joint takes, by its record.
+float substep_share(const WorldData& world, int record) {
+    int c = 0;
+    while (record >= world.parts[c].first_joint + world.parts[c].joint_count) ++c;
+    return 1.0f / static_cast<float>(1 << c);
+}
+
 // The impulses of a joint, solved now or not.
 JointImpulses impulses_of(const WorldData& world, uint32_t slot) {
     if (world.joints.record[slot] < 0) return world.joints.impulses[slot];
@@ -188,7 +201,7 @@ JointImpulses impulses_of(const WorldData& world, uint32_t slot) {
     i.flags = r.flags;
     i.impulse = {r.impulse[0], r.impulse[1], r.impulse[2]};
     i.angular_impulse = {r.angular_impulse[0], r.angular_impulse[1], r.angular_impulse[2]};
-    i.h = world.last_h;
+    i.h = world.last_h * substep_share(world, world.joints.record[slot]);
     return i;
 }
 
@@ -211,6 +224,7 @@ void remove_joint_at(WorldData& world, uint32_t slot) {
     wake_body(world, j.body_a);
     wake_body(world, j.body_b);
     drop_records(world);
+    world.joint_groups_changed = true;
     world.joints.remove(slot);
 }
 
@@ -242,7 +256,7 @@ Result<JointId> World::add_joint(const JointDef& def) {
     j.user_data = def.user_data;
     wake_body(world, j.body_a);
     wake_body(world, j.body_b);
-    world.joints_changed = true;
+    world.joints_changed = world.joint_groups_changed = true;
     return world.joints.id(world.joints.add(j, def.name.substr(0, max_name)));
 }
 
@@ -351,29 +365,63 @@ uint64_t hash_joints(const WorldData& world, uint64_t start) {
 
 // --- stage
 
+namespace {
+
+// What static and kinematic bodies' sides say may have changed.
+void renew_sides(WorldData& world) {
+    for (size_t i = 0; i < world.active_joints.size(); ++i) {
+        JointRecord& r = world.joint_records[i];
+        if (r.body_a == static_body || r.body_b == static_body)
+            put_sides(world, world.joints.info[world.active_joints[i]], r);
+    }
+}
+
+// Awake joints by class of substeps, stably.
+void list_joints(WorldData& world) {
+    JointStore& joints = world.joints;
+    auto class_of_joint = [&](const JointInfo& j) {
+        uint32_t moved = awake(world, j.body_a) ? j.body_a : j.body_b;
+        return awake(world, moved) ? part_of(world, world.bodies.info[moved].solver_index) : -1;
+    };
+    int counts[substep_classes] = {};
+    for (uint32_t slot : joints.slots.order())
+        if (int c = class_of_joint(joints.info[slot]); c >= 0) ++counts[c];
+    int first = 0;
+    for (int c = 0; c < substep_classes; ++c) {
+        world.parts[c].first_joint = first;
+        world.parts[c].joint_count = counts[c];
+        first += counts[c];
+        counts[c] = 0;
+    }
+    world.active_joints.resize_unset(static_cast<size_t>(first));
+    world.joint_records.resize_unset(static_cast<size_t>(first));
+    for (uint32_t slot : joints.slots.order()) {
+        int c = class_of_joint(joints.info[slot]);
+        if (c < 0) continue;
+        joints.record[slot] = world.parts[c].first_joint + counts[c]++;
+        world.active_joints[static_cast<size_t>(joints.record[slot])] = slot;
+    }
+}
+
+bool same_bodies(const WorldData& world) {
+    for (int c = 0; c < substep_classes; ++c)
+        if (world.joint_bodies_ends[c] != world.parts[c].bodies.end) return false;
+    return world.joint_bodies.size() == world.awake.size() &&
+           std::memcmp(world.joint_bodies.data(), world.awake.data(), world.awake.size() * sizeof(uint32_t)) == 0;
+}
+
+}  // namespace
+
 JointReuse pack_joints(WorldData& world, float h) {
     JointStore& joints = world.joints;
     if (joints.count() == 0 && world.active_joints.empty()) return {};
-    const int end = world.parts[0].bodies.end;  // all bodies with joints are of the first class of substeps
-    bool same = !world.joints_changed && world.joint_bodies_end == end &&
-                world.joint_bodies.size() == world.awake.size() &&
-                std::memcmp(world.joint_bodies.data(), world.awake.data(), world.awake.size() * sizeof(uint32_t)) == 0;
-    JointReuse reuse{same, world.last_h > 0.0f ? h / world.last_h : 0.0f};
-    if (same) {  // what static and kinematic bodies' sides say may have changed
-        for (size_t i = 0; i < world.active_joints.size(); ++i) {
-            JointRecord& r = world.joint_records[i];
-            if (r.body_a == static_body || r.body_b == static_body)
-                put_sides(world, joints.info[world.active_joints[i]], r);
-        }
+    JointReuse reuse{!world.joints_changed && same_bodies(world), world.last_h > 0.0f ? h / world.last_h : 0.0f};
+    if (reuse.same) {
+        renew_sides(world);
         return reuse;
     }
     drop_records(world);
-    for (uint32_t slot : joints.slots.order())
-        if (awake(world, joints.info[slot].body_a) || awake(world, joints.info[slot].body_b)) {
-            joints.record[slot] = world.active_joints.count();
-            world.active_joints.push_back(slot);
-        }
-    world.joint_records.resize_unset(world.active_joints.size());
+    list_joints(world);
     world.tasks.for_each(world.active_joints.count(), 256, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i) {
             uint32_t slot = world.active_joints[static_cast<size_t>(i)];
@@ -383,13 +431,13 @@ JointReuse pack_joints(WorldData& world, float h) {
             r.type = class_of(j);
             put_bounds(r, j);
             const JointImpulses& last = joints.impulses[slot];
-            put_impulses(r, last, last.h > 0.0f ? world.last_h / last.h : 0.0f);
+            put_impulses(r, last, last.h > 0.0f ? world.last_h * substep_share(world, i) / last.h : 0.0f);
             world.joint_records[static_cast<size_t>(i)] = r;
         }
     });
     world.joint_bodies.clear();
     world.joint_bodies.append(world.awake.data(), world.awake.size());
-    world.joint_bodies_end = end;
+    for (int c = 0; c < substep_classes; ++c) world.joint_bodies_ends[c] = world.parts[c].bodies.end;
     world.joints_changed = false;
     return reuse;
 }

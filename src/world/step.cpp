@@ -36,12 +36,13 @@ void prepare_solvers(WorldData& world, float dt) {
     const ContactRecord* records = world.records.data();
     for (int c = 0; c < substep_classes; ++c) {
         const SolverPart& part = world.parts[c];
+        ContactList contacts{records, world.active.data() + part.first_contact, part.contact_count, dt};
         world.solvers[c].prepare(world.tasks, world.solver_bodies, records, world.active.data() + part.first_contact,
                                  part.contact_count);
+        world.solvers[c].prepare_joints(world.tasks, world.solver_bodies,
+                                        world.joint_records.data() + part.first_joint, part.joint_count, contacts,
+                                        reuse);
     }
-    world.solvers[0].prepare_joints(world.tasks, world.solver_bodies, world.joint_records.data(),
-                                    world.joint_records.count(),
-                                    {records, world.active.data(), world.parts[0].contact_count, dt}, reuse);
 }
 
 // `last`: the step is the last part of an update, after which applied forces end.
@@ -61,6 +62,7 @@ void step(WorldData& world, float dt, bool last) {
     clock.lap(Stage::narrow_phase);
     update_islands(world, dt);
     clock.lap(Stage::islands);
+    find_joint_groups(world);
     choose_substeps(world, dt);
     pack_bodies(world, dt);
     pack_contacts(world);
@@ -72,8 +74,10 @@ void step(WorldData& world, float dt, bool last) {
         world.solvers[c].solve(world.tasks, s, world.solver_bodies, world.records.data(), world.parts[c].bodies);
     }
     clock.lap(Stage::solve);
-    for (Solver& solver : world.solvers) solver.store(world.tasks, world.records.data());
-    world.solvers[0].store_joints(world.tasks);
+    for (Solver& solver : world.solvers) {
+        solver.store(world.tasks, world.records.data());
+        solver.store_joints(world.tasks);
+    }
     unpack_contacts(world);
     remember_poses(world);
     unpack_bodies(world, dt, last);

@@ -55,15 +55,10 @@ inline constexpr uint16_t joint_split = 1;
 // Neither body has another joint: one sweep solves it exactly, so it needs no softness.
 inline constexpr uint16_t joint_alone = 2;
 
-// Belongs to a tree that is solved directly, which needs no softness either.
-inline constexpr uint16_t joint_direct = 4;
-
 // Where joints share bodies, a sweep leaves slow modes unsolved; as for contacts these must be damped by giving up a
 // share of the impulse in every biased pass, with `bias` the share of the gap that is undone. See docs/solver.md.
 inline constexpr float joint_bias = 0.2f;
 inline constexpr float joint_leak = 0.1f;
-// A direct solve needs neither, but where a tree whips faster than substeps resolve, gaps closed at once ring.
-inline constexpr float joint_direct_bias = 1.0f;
 // A sweep over joints with cycles through one body may overshoot, and impulses kept from substep to substep then grow.
 // Joints of a body with more joints than this take smaller shares of their solution: with 40 long-armed joints on a
 // light body full shares blow up within ten steps.

@@ -19,27 +19,6 @@ JointConstants constants(const SubstepConstants& k) {
 
 template <class Run>
 void JointSolver::for_each_group(TaskPool& tasks, Run&& run) const {
-    tasks.for_each(schedule_.direct_groups.count(), joints_per_task, [&](int begin, int end, int) {
-        for (int i = begin; i < end; ++i) {
-            const JointGroup& g = schedule_.direct_groups[static_cast<size_t>(i)];
-            run(scalar_.of[static_cast<size_t>(g.type)], g, 0, 1);
-        }
-    });
-    for_each_iterated_group(tasks, run);
-}
-
-void JointSolver::solve_trees(TaskPool& tasks, SolverBodies& bodies, const JointConstants& k, bool biased,
-                              bool last) const {
-    tasks.for_each(schedule_.trees.trees.count(), 1, [&](int begin, int end, int) {
-        for (int i = begin; i < end; ++i) {
-            const JointTree& tree = schedule_.trees.trees[static_cast<size_t>(i)];
-            if (biased || !tree.split || last) solve_tree(tree, schedule_.trees.nodes.data(), work_, bodies, k, biased);
-        }
-    });
-}
-
-template <class Run>
-void JointSolver::for_each_iterated_group(TaskPool& tasks, Run&& run) const {
     for (int i = 0; i < schedule_.groups.count(); ++i) {
         const JointGroup& g = schedule_.groups[static_cast<size_t>(i)];
         size_t type = static_cast<size_t>(g.type);
@@ -57,7 +36,6 @@ void JointSolver::prepare(TaskPool& tasks, SolverBodies& bodies, JointRecord* re
                           JointReuse reuse) {
     records_ = records;
     bool fresh = schedule_.build(records, count, reuse.same, contacts, bodies, table_, scalar_);
-    work_ = schedule_.trees.work.data();
     for_each_group(tasks, [&](const JointKernels& kernels, const JointGroup& g, int begin, int end) {
         if (fresh || !g.moved_a || !g.moved_b) kernels.load(g, records_, fresh, begin, end);
         kernels.prepare(g, bodies, reuse.scale, begin, end);
@@ -65,17 +43,14 @@ void JointSolver::prepare(TaskPool& tasks, SolverBodies& bodies, JointRecord* re
 }
 
 void JointSolver::warm_start(TaskPool& tasks, SolverBodies& bodies) const {
-    for (const JointGroup& g : schedule_.direct_groups)  // one by one: they share bodies
-        scalar_.of[static_cast<size_t>(g.type)].warm_start(g, bodies, JointConstants{}, 0, 1);
-    for_each_iterated_group(tasks, [&](const JointKernels& kernels, const JointGroup& g, int begin, int end) {
+    for_each_group(tasks, [&](const JointKernels& kernels, const JointGroup& g, int begin, int end) {
         kernels.warm_start(g, bodies, JointConstants{}, begin, end);
     });
 }
 
 void JointSolver::biased(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k) const {
     const JointConstants c = constants(k);
-    solve_trees(tasks, bodies, c, true, k.last);
-    for_each_iterated_group(tasks, [&](const JointKernels& kernels, const JointGroup& g, int begin, int end) {
+    for_each_group(tasks, [&](const JointKernels& kernels, const JointGroup& g, int begin, int end) {
         kernels.biased(g, bodies, c, begin, end);
     });
 }
@@ -86,8 +61,7 @@ void JointSolver::relax(TaskPool& tasks, SolverBodies& bodies, const SubstepCons
     c.first = false;
     c.scale = k.end_scale;
     c.share = 0.5f;
-    solve_trees(tasks, bodies, c, false, k.last);
-    for_each_iterated_group(tasks, [&](const JointKernels& kernels, const JointGroup& g, int begin, int end) {
+    for_each_group(tasks, [&](const JointKernels& kernels, const JointGroup& g, int begin, int end) {
         if (!g.split || k.last) kernels.relax(g, bodies, c, begin, end);
     });
 }

@@ -21,7 +21,7 @@ public:
     // Colours the joints and packs them into rows. `records` must stay until store().
     void prepare(TaskPool& tasks, SolverBodies& bodies, JointRecord* records, int count, ContactList contacts,
                  JointReuse reuse);
-    bool empty() const { return schedule_.groups.empty() && schedule_.direct_groups.empty(); }
+    bool empty() const { return schedule_.groups.empty(); }
     // In the first substep, after the contacts' warm start.
     void warm_start(TaskPool& tasks, SolverBodies& bodies) const;
     // Between kick and drift.
@@ -30,22 +30,17 @@ public:
     void relax(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k) const;
     void store(TaskPool& tasks) const;
 
-    int joint_count() const { return schedule_.order.count() + schedule_.direct_groups.count(); }
-    int direct_count() const { return schedule_.direct_groups.count(); }
+    int joint_count() const { return schedule_.order.count(); }
     int overflow() const;
     size_t row_bytes() const { return schedule_.rows.size(); }
 
 private:
-    // Calls run(kernels, group, begin, end) for every group: those of trees, then the others colour after colour.
+    // Calls run(kernels, group, begin, end) for every group, colour after colour.
     template <class Run>
     void for_each_group(TaskPool& tasks, Run&& run) const;
-    template <class Run>
-    void for_each_iterated_group(TaskPool& tasks, Run&& run) const;
-    void solve_trees(TaskPool& tasks, SolverBodies& bodies, const JointConstants& k, bool biased, bool last) const;
 
     JointSchedule schedule_;
     JointRecord* records_ = nullptr;
-    TreeWork* work_ = nullptr;
     const JointTable& table_;
     const JointTable& scalar_;
 };

@@ -61,9 +61,9 @@ LENDULET_FORCE_INLINE void load_joint(JointRow<W, C>& c, JointFrames<W, C>& fram
         const JointRecord& r = records[index[l]];
         c.a[l] = live[l] ? r.body_a : g.filler;
         c.b[l] = live[l] ? r.body_b : g.filler;
-        bool alone = (r.flags & joint_alone) != 0, direct = (r.flags & joint_direct) != 0;
-        set_lane(c.bias, l, direct ? joint_direct_bias : alone ? 1.0f : joint_bias);
-        set_lane(c.leak, l, direct || alone ? 0.0f : joint_leak);
+        bool alone = (r.flags & joint_alone) != 0;
+        set_lane(c.bias, l, alone ? 1.0f : joint_bias);
+        set_lane(c.leak, l, alone ? 0.0f : joint_leak);
     }
     JointQuads<W> arm_a(records, index, joint_arm_a), arm_b(records, index, joint_arm_b),
         bounds(records, index, joint_bounds);
@@ -150,6 +150,10 @@ LENDULET_FORCE_INLINE void prepare_joint(JointRow<W, C>& c, const JointFrames<W,
             for (auto& row : c.row) row.limit = splat<F>(scale) * row.limit;
         if constexpr (S::driven) c.motor = splat<F>(scale) * c.motor;
     }
+    F a[4], b[4];
+    gather4<W>(floats_of(bodies.state.data()), c.a, sizeof(BodyState) / sizeof(float), 0, a);
+    gather4<W>(floats_of(bodies.state.data()), c.b, sizeof(BodyState) / sizeof(float), 0, b);
+    c.share_a = b[3] * inverse_or_zero(a[3] + b[3]);
     // The impulses on the axes of now.
     JointPair<F> still{};
     still.dqa.w = still.dqb.w = splat<F>(1.0f);

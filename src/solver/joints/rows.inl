@@ -1,9 +1,9 @@
 // Joint rows: W joints of one class side by side, and how they follow the bodies. Part of kernels.inl.
 //
-// Both bodies get every impulse at one shared world point: half way between the two anchors, or between B's anchor and
-// the axis for sliders. Linear and angular momentum are therefore conserved together. Arms, axes and effective masses
+// Both bodies get every impulse at one shared world point between the two anchors, or between B's anchor and the axis
+// for sliders. Linear and angular momentum are therefore conserved together. Arms, axes and effective masses
 // are taken anew in every pass, from the displacement since the start of the step; none of them is stored. A ball
-// joint's row is 128 bytes a joint.
+// joint's row is 132 bytes a joint.
 
 template <JointClass C>
 struct JointShape {
@@ -67,8 +67,9 @@ struct alignas(64) JointRow
     F impulse[JointShape<C>::locked];
     F bias, leak;  // shares of the gap undone and of the impulse given up in a biased pass
     F relaxation;  // share of its solution that the joint takes in a pass
+    F share_a;     // share of a gap between the anchors by which the shared point is off A's
 };
-static_assert(sizeof(JointRow<16, JointClass::ball>) == 16 * 128);
+static_assert(sizeof(JointRow<16, JointClass::ball>) == 16 * 132);
 
 // Joint frames on the bodies as the records give them.
 template <int W, JointClass C>
@@ -166,14 +167,15 @@ LENDULET_FORCE_INLINE JointGeometry<W, C> find_geometry(const JointRow<W, C>& c,
         error = o.gap - o.coordinate[0] * o.direction[2];
         o.ra = o.ra + (o.gap - error);
     }
-    // Half the error to each, but no more than the arms are long: torn joints must not get endless levers.
-    F arms = dot(o.ra, o.ra) + dot(o.rb, o.rb), size = dot(error, error), half = splat<F>(0.5f);
+    // The shared point is nearer to the lighter body's anchor, and at it where the other one cannot be moved: an arm that
+    // a gap has turned away from a spinning body's axis would change its spin. But shares are no longer than the arms:
+    // torn joints must not get endless levers.
+    F arms = dot(o.ra, o.ra) + dot(o.rb, o.rb), size = dot(error, error), most = splat<F>(1.0f);
     auto torn = size > arms;
     if (mask_bits(torn) != 0) [[unlikely]]
-        half = select(torn, half * square_root(arms / maximum(size, splat<F>(1e-30f))), half);
-    error = half * error;
-    o.ra = o.ra + error;
-    o.rb = o.rb - error;
+        most = select(torn, square_root(arms / maximum(size, splat<F>(1e-30f))), most);
+    o.ra = o.ra + (most * c.share_a) * error;
+    o.rb = o.rb - (most * (splat<F>(1.0f) - c.share_a)) * error;
     return o;
 }
 

@@ -92,10 +92,7 @@ void JointSchedule::set_modes(JointRecord* records, int count, const SolverBodie
         uint32_t crowd = joint_count_[a] > joint_count_[b] ? joint_count_[a] : joint_count_[b];
         r.relaxation = minimum(1.0f, joint_crowd / static_cast<float>(crowd));
         r.old_flags = r.flags;
-        bool direct = trees.direct[static_cast<size_t>(i)] != 0;
-        if (direct) r.relaxation = 1.0f;
-        r.flags =
-            static_cast<uint16_t>((split ? joint_split : 0) | (alone ? joint_alone : 0) | (direct ? joint_direct : 0));
+        r.flags = static_cast<uint16_t>((split ? joint_split : 0) | (alone ? joint_alone : 0));
     }
 }
 
@@ -125,26 +122,10 @@ JointGroup JointSchedule::group_of(int type, int side_kind, bool split, int coun
     return g;
 }
 
-void JointSchedule::place_trees(const JointRecord* records, const SolverBodies& bodies, size_t& bytes,
-                                const JointTable& table) {
-    direct_groups.clear();
-    for (JointTree& tree : trees.trees)
-        for (size_t n = static_cast<size_t>(tree.first); n < static_cast<size_t>(tree.first + tree.count); ++n) {
-            if (!trees.nodes[n].has_joint) continue;
-            const JointRecord& r = records[trees.records[n]];
-            tree.split = (r.flags & joint_split) != 0;
-            direct_groups.push_back(
-                group_of(static_cast<int>(r.type), sides(bodies, r), tree.split, 1, &trees.records[n], bytes, table));
-        }
-}
-
 void JointSchedule::colour(const JointRecord* records, int count, const SolverBodies& bodies, const JointTable& table,
                            const JointTable& scalar_table) {
-    iterated_.clear();
-    for (int i = 0; i < count; ++i)
-        if (!trees.direct[static_cast<size_t>(i)]) iterated_.push_back(static_cast<uint32_t>(i));
-    sorter_.begin(bodies.count, iterated_.count(), classes);
-    for (uint32_t i : iterated_) {
+    sorter_.begin(bodies.count, count, classes);
+    for (int i = 0; i < count; ++i) {
         const JointRecord& r = records[i];
         Sides s = sides(bodies, r);
         int mode = (r.flags & joint_split) != 0 ? 1 : 0;
@@ -152,7 +133,7 @@ void JointSchedule::colour(const JointRecord* records, int count, const SolverBo
                     (static_cast<int>(r.type) * side_kinds + s) * modes + mode);
     }
     sorter_.end();
-    order.resize_unset(iterated_.size());
+    order.resize_unset(static_cast<size_t>(count));
     groups.clear();
     first_overflow_group = -1;
     size_t bytes = 0;
@@ -163,32 +144,23 @@ void JointSchedule::colour(const JointRecord* records, int count, const SolverBo
                                   order.data() + begin, bytes, overflows ? scalar_table : table));
     });
     if (first_overflow_group < 0) first_overflow_group = groups.count();
-    place_trees(records, bodies, bytes, scalar_table);
     rows.resize_unset(bytes);
-    for (Array<JointGroup>* list : {&groups, &direct_groups})
-        for (JointGroup& g : *list) {
-            g.rows = rows.data() + reinterpret_cast<size_t>(g.rows);
-            g.frames = rows.data() + reinterpret_cast<size_t>(g.frames);
-        }
-    sorter_.fill([&](uint32_t place, uint32_t i) { order[place] = iterated_[i]; });
-    size_t next = 0;
-    for (TreeNode& node : trees.nodes) node.row = node.has_joint ? direct_groups[next++].rows : nullptr;
+    for (JointGroup& g : groups) {
+        g.rows = rows.data() + reinterpret_cast<size_t>(g.rows);
+        g.frames = rows.data() + reinterpret_cast<size_t>(g.frames);
+    }
+    sorter_.fill([&](uint32_t place, uint32_t i) { order[place] = i; });
 }
 
 bool JointSchedule::build(JointRecord* records, int count, bool same, ContactList contacts, SolverBodies& bodies,
                           const JointTable& table, const JointTable& scalar_table) {
     if (count == 0) {
         groups.clear();
-        direct_groups.clear();
-        trees.trees.clear();
         order.clear();
         first_overflow_group = 0;
         return true;
     }
-    if (!same) {
-        find_groups_of_bodies(records, count, bodies);
-        trees.find(records, count, bodies, parent_.data());
-    }
+    if (!same) find_groups_of_bodies(records, count, bodies);
     find_touching(contacts, bodies);
     set_bodies(bodies);
     if (same && std::memcmp(touched_.data(), touched_before_.data(), touched_.size()) == 0) return false;

@@ -9,7 +9,6 @@
 #include "solver/colouring.h"
 #include "solver/joints/joint.h"
 #include "solver/joints/kernels.h"
-#include "solver/joints/trees.h"
 
 namespace lendulet {
 
@@ -25,18 +24,13 @@ struct JointSchedule {
     Array<uint32_t> order;     // indices of records, by group
     Array<JointGroup> groups;  // in the order in which they are solved
     Array<std::byte> rows;
-    JointTrees trees;                 // solved directly ...
-    Array<JointGroup> direct_groups;  // ... each of whose joints is a group of its own, in one lane
-    int first_overflow_group = 0;     // groups from here on hold joints that share bodies: one lane, one thread
+    int first_overflow_group = 0;  // groups from here on hold joints that share bodies: one lane, one thread
 
     explicit JointSchedule(const Memory* memory)
         : order(memory),
           groups(memory),
           rows(memory),
-          trees(memory),
-          direct_groups(memory),
           sorter_(memory),
-          iterated_(memory),
           joint_count_(memory),
           jointed_(memory),
           parent_(memory),
@@ -59,10 +53,8 @@ private:
 
     JointGroup group_of(int type, int side_kind, bool split, int count, const uint32_t* which, size_t& bytes,
                         const JointTable& table) const;
-    void place_trees(const JointRecord* records, const SolverBodies& bodies, size_t& bytes, const JointTable& table);
 
     ColourSorter sorter_;
-    Array<uint32_t> iterated_;                 // indices of records that are not solved directly
     Array<uint32_t> joint_count_;              // by body
     Array<uint32_t> jointed_;                  // bodies with joints that constraints move
     Array<uint32_t> parent_;                   // by body: the first one of its group
