@@ -1,7 +1,5 @@
 #include "dynamics/joint_store.h"
 
-#include "base/hash.h"
-
 namespace lendulet {
 
 uint32_t JointStore::add(const JointInfo& joint, std::string_view joint_name) {
@@ -9,12 +7,12 @@ uint32_t JointStore::add(const JointInfo& joint, std::string_view joint_name) {
     size_t n = slots.capacity();
     info.resize(n);
     impulses.resize(n);
-    report.resize(n);
+    record.resize(n, -1);
     next_.resize(2 * n, no_joint_link);
     if (name.size() < n) name.resize(n);
     info[slot] = joint;
     impulses[slot] = {};
-    report[slot] = {};
+    record[slot] = -1;
     name[slot] = std::string(joint_name);
     hang(joint.body_a, 2 * slot);
     hang(joint.body_b, 2 * slot + 1);
@@ -54,21 +52,6 @@ bool JointStore::keeps_apart(uint32_t a, uint32_t b) const {
         from_b = next_[from_b];
     }
     return false;
-}
-
-uint64_t JointStore::hash(uint64_t start) const {
-    uint64_t h = hash_combine(start, slots.order().size());
-    for (uint32_t slot : slots.order()) {
-        const JointImpulses& i = impulses[slot];
-        h = hash_floats(h, i.linear[0], 3);
-        h = hash_floats(h, i.linear[1], 3);
-        h = hash_floats(h, i.angular[0], 3);
-        h = hash_floats(h, i.angular[1], 3);
-        h = hash_floats(h, i.limit, 2);
-        h = hash_floats(h, i.motor, 2);
-        h = hash_floats(h, &i.spring, 1);
-    }
-    return h;
 }
 
 }  // namespace lendulet

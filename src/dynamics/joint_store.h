@@ -31,20 +31,16 @@ struct JointInfo {
     uint64_t user_data = 0;
 };
 
-// What the solver keeps of a joint from step to step: impulses on B of the last substep, those of the biased pass and
-// those of the relax pass. Linear ones along world axes (sliders: y and z of the joint frame), angular ones along the
-// joint frame's y, z and x axes, each as many as the joint locks; N s and N m s.
+// What the solver leaves of a joint: impulses on B of the last substep. Linear ones along world axes (sliders: y and z
+// of the joint frame), angular ones along the joint frame's y, z and x axes, each as many as the joint locks; N s and
+// N m s. While a joint is solved, the world holds them in its JointRecord.
 struct JointImpulses {
-    float linear[2][3]{}, angular[2][3]{};
+    float linear[3]{}, angular[3]{};
     float limit[2]{};  // of the limited coordinate, or of a ball joint's swing and twist
-    float motor[2]{};
+    float motor = 0.0f;
     float spring = 0.0f;
-    uint32_t flags = 0;  // the solver's: how impulses were divided between both passes
-};
-
-// What the last step reported.
-struct JointReport {
-    Vec3 impulse, angular_impulse;  // on B in the last substep, world axes
+    uint16_t flags = 0;             // the solver's: what part of a substep they stand for
+    Vec3 impulse, angular_impulse;  // all of them, world axes
     float h = 0.0f;                 // that substep, s; 0: the joint has not been solved yet
 };
 
@@ -52,11 +48,11 @@ struct JointStore {
     Slots slots;
     Array<JointInfo> info;
     Array<JointImpulses> impulses;
-    Array<JointReport> report;
+    Array<int32_t> record;  // index of its JointRecord while it is solved, or -1
     std::vector<std::string> name;
 
     JointStore(const Memory* memory, uint32_t world)
-        : slots(memory, world), info(memory), impulses(memory), report(memory), next_(memory), first_(memory) {}
+        : slots(memory, world), info(memory), impulses(memory), record(memory), next_(memory), first_(memory) {}
 
     // A new joint; hangs it on both bodies.
     uint32_t add(const JointInfo& joint, std::string_view name);
@@ -69,6 +65,12 @@ struct JointStore {
     uint32_t first_of(uint32_t body) const {
         return body < first_.size() && first_[body] != no_joint_link ? first_[body] / 2 : no_joint_link;
     }
+    // Calls use(joint) for every joint of a body, youngest first.
+    template <class Use>
+    void for_each_of(uint32_t body, Use&& use) const {
+        if (body >= first_.size()) return;
+        for (uint32_t link = first_[body]; link != no_joint_link; link = next_[link]) use(link / 2);
+    }
     // Whether a joint between these bodies keeps their colliders from meeting. Cost: the joints of
     // the body that has fewer.
     bool keeps_apart(uint32_t a, uint32_t b) const;
@@ -77,8 +79,6 @@ struct JointStore {
     void for_each_link(Link&& link) const {
         for (uint32_t slot : slots.order()) link(info[slot].body_a, info[slot].body_b);
     }
-    // Mixes all warm-start impulses into a hash, in creation order.
-    uint64_t hash(uint64_t start) const;
 
 private:
     // A link is 2 * joint + side; lists lead from each body through its links, youngest first.

@@ -10,6 +10,7 @@ void SolverBodies::reset(int moving) {
     inertia.resize_unset(size);
     start.resize_unset(size);
     motion.resize_unset(size);
+    place.resize_unset(size);
     blocks.resize_unset(size / block_bodies);
     for (int i = 0; i < reserved_bodies; ++i) set_at_rest(i);
     for (int i = count; i < padded; ++i) set_at_rest(i);
@@ -22,6 +23,7 @@ void SolverBodies::set_at_rest(int body) {
     inertia[i] = BodyInertia{};
     start[i] = BodyStart{};
     motion[i] = BodyMotion{};
+    place[i] = BodyPlace{};
     motion[i].q0[3] = 1.0f;
     motion[i].anisotropy = motion[i].free = 1.0f;
 }

@@ -41,6 +41,12 @@ struct alignas(32) BodyInertia {
         gyro_y;  // where there are joints, from kick to drift: angular acceleration by the body's own spin, rad/s^2
 };
 
+// Centre of mass at the start of the step, m, and what rounding took from it.
+struct alignas(32) BodyPlace {
+    float x[3], unused0;
+    float x_low[3], unused1;
+};
+
 // What a body brings into the step and, of L and the changes, what it takes out of it.
 struct alignas(64) BodyMotion {
     float q0[4];               // orientation of the principal axes at the start of the step
@@ -69,7 +75,9 @@ struct alignas(64) BodyBlock {
     Lanes linear_loss, angular_loss, anisotropy, free, joints;
     Lanes L[3];
     Lanes v_ref[3], w_ref[3];        // velocities as the running pass of constraints found them
-    Lanes dv[3], dw[3];              // what constraints added since the last kick: the next substep's warm start
+    // What constraints added since the last kick: the next substep's warm start. Of bodies with joints dw is angular
+    // momentum.
+    Lanes dv[3], dw[3];
     Lanes v_start[3], L_start[3];    // velocity and L at the start of the substep ...
     Lanes change_v[3], change_L[3];  // ... and how the substep before changed them
 };
@@ -85,11 +93,12 @@ struct SolverBodies {
     Array<BodyInertia> inertia;
     Array<BodyStart> start;
     Array<BodyMotion> motion;
+    Array<BodyPlace> place;
     Array<BodyBlock> blocks;
     int count = 0;  // with the reserved ones; arrays are padded to a multiple of 16
 
     explicit SolverBodies(const Memory* memory)
-        : state(memory), inertia(memory), start(memory), motion(memory), blocks(memory) {}
+        : state(memory), inertia(memory), start(memory), motion(memory), place(memory), blocks(memory) {}
     // Makes room for `moving` bodies and sets the reserved and padding entries.
     void reset(int moving);
     // Makes an entry that is part of no constraint.

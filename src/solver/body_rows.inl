@@ -13,10 +13,10 @@
 // free flight, sliding and swinging second-order accurate; a body that is being stopped moves by its final velocity,
 // which is what its contacts asked for. Evenly means that the velocity changes now as it did in the substep before.
 //
-// Bodies with joints: joint impulses are no part of the warm start, see joint_passes.inl; the drift goes by the
-// velocity that the joints' biased pass chose. Where nothing but joints constrains a group of bodies, the kick is
-// split: half of the applied forces acts before the drift and half after it (kick-drift-kick), and what joints add
-// follows in the relax pass. Elsewhere all of the kick comes first, as contacts want it.
+// Bodies with joints (see joints/passes.inl): what constraints added to their angular momentum is repeated, rather than
+// what they added to w, and the drift goes by the velocity that the joints' biased pass chose. Where nothing but joints
+// constrains a group of bodies, the kick is split: half of the applied forces acts before the first drift, half after
+// the last one, all of them in between. Elsewhere all of the kick comes first, as contacts want it.
 
 // Lanes [first, first + W) of the components of a BodyBlock.
 template <int W>
@@ -164,44 +164,48 @@ LENDULET_FORCE_INLINE void store_gyro(SolverBodies& bodies, const int32_t* index
 }
 
 template <int W>
-void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, bool first_substep, int begin, int end) {
+void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
     using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f);
     for (int i = begin; i < end; i += W) {
         Consecutive<W> c(i);
         BlockLanes<W> y(bodies, i);
         BodyBlock& b = y.block;
         WideVelocity<F> x = load_velocity<W>(bodies.state.data(), c.index);
-        auto movable = x.inverse_mass > splat<F>(0.0f);
+        auto movable = x.inverse_mass > zero;
+        JointMode<F> mode{};
+        if (k.joints) mode = joint_mode(y.get(b.joints));
         Vec3T<F> L = y.get(b.L), dv = zero_vector<F>(), dw = dv;
-        if (!first_substep) {
+        if (!k.first) {
             Vec3T<F> dp;
             QuatT<F> dq;
             load_displacement<W>(bodies.state.data(), c.index, dp, dq);
             Vec3T<F> rv = x.v - y.get(b.v_ref), rw = x.w - y.get(b.w_ref);
+            Vec3T<F> more_L = apply_principal(multiply(dq, y.get(b.q0)), y.get(b.inertia), rw);
             dv = y.get(b.dv) + rv;
-            dw = y.get(b.dw) + rw;
-            L = L + apply_principal(multiply(dq, y.get(b.q0)), y.get(b.inertia), rw);
+            dw = y.get(b.dw) + (k.joints ? select(mode.jointed > zero, more_L, rw) : rw);
+            L = L + more_L;
             y.put(b.change_v, x.v - y.get(b.v_start));
             y.put(b.change_L, L - y.get(b.L_start));
         }
         y.put(b.v_start, x.v);
         y.put(b.L_start, L);
         F h = splat<F>(k.h);
-        if (k.joints) {
-            auto split = joint_mode(y.get(b.joints)).split > splat<F>(0.0f);
-            h = select(split, splat<F>(0.5f) * h, h);
-            dv = select(split, zero_vector<F>(), dv);
-            dw = select(split, zero_vector<F>(), dw);
-            y.put(b.dv, dv);
-            y.put(b.dw, dw);
-        }
+        if (k.joints && k.first) h = select(mode.split > zero, splat<F>(0.5f) * h, h);
         Vec3T<F> start_w = y.get(b.start_w);
         L = L - y.get(b.angular_loss) * L + h * y.get(b.torque);
         SymMat3T<F> I = load_inverse_inertia<W>(bodies.inertia.data(), c.index);
         Vec3T<F> push = h * y.get(b.acceleration) - y.get(b.linear_loss) * (y.get(b.start_v) + x.v);
         x.v = x.v + select(movable, push, zero_vector<F>());
         x.w = select(movable, I * L - start_w, x.w);
-        if (k.joints) store_gyro<W>(bodies, c.index, I, L, start_w + x.w);
+        if (k.joints) {
+            F scale = select(mode.split > zero, splat<F>(k.repeat_scale), splat<F>(1.0f));
+            dv = scale * dv;
+            Vec3T<F> more_L = scale * dw;
+            dw = select(mode.jointed > zero, I * more_L, dw);
+            more_L = select(mode.jointed > zero, more_L, zero_vector<F>());
+            store_gyro<W>(bodies, c.index, I, L + more_L, start_w + (x.w + dw));
+        }
         y.put(b.L, L);
         y.put(b.v_ref, x.v);
         y.put(b.w_ref, x.w);
@@ -235,9 +239,8 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
         Vec3T<F> inverse = y.get(b.inverse_inertia), start_w = y.get(b.start_w);
         F anisotropy = y.get(b.anisotropy), free = y.get(b.free);
         Vec3T<F> dv = x.v - y.get(b.v_ref), dw = x.w - y.get(b.w_ref);
-        Vec3T<F> L = y.get(b.L) + apply_principal(multiply(dq, q0), y.get(b.inertia), dw);
-        y.put(b.dv, dv);
-        y.put(b.dw, dw);
+        Vec3T<F> more_L = apply_principal(multiply(dq, q0), y.get(b.inertia), dw);
+        Vec3T<F> L = y.get(b.L) + more_L;
 
         Vec3T<F> change_v = even_change(x.v - y.get(b.v_start), y.get(b.change_v), free);
         Vec3T<F> change_L = even_change(L - y.get(b.L_start), y.get(b.change_L), free);
@@ -246,20 +249,29 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
             mode = joint_mode(y.get(b.joints));
             change_v = select(mode.jointed > zero, zero_vector<F>(), change_v);
             change_L = select(mode.jointed > zero, zero_vector<F>(), change_L);
+            dw = select(mode.jointed > zero, more_L, dw);
         }
+        y.put(b.dv, dv);
+        y.put(b.dw, dw);
         dp = dp + splat<F>(k.h) * (y.get(b.start_v) + (x.v - half * change_v));
         dq = turn_at_constant_L<W>(dq, q0, L - half * change_L, inverse, start_w + x.w, anisotropy, k.h);
 
         SymMat3T<F> I = rotate_diagonal(rotation_matrix<F>(multiply(dq, q0), splat<F>(1.0f)), inverse);
-        if (k.joints) {
-            F second = splat<F>(0.5f * k.h) * mode.split;
-            x.v = x.v + second * y.get(b.acceleration);
-            L = L + second * y.get(b.torque);
+        const bool second_half = k.joints && k.last;
+        if (second_half) {
+            F h = splat<F>(0.5f * k.h) * mode.split;
+            x.v = x.v + h * y.get(b.acceleration);
+            L = L + h * y.get(b.torque);
         }
         x.w = select(x.inverse_mass > zero, I * L - start_w, x.w);
         y.put(b.L, L);
         y.put(b.v_ref, x.v);
         y.put(b.w_ref, x.w);
+        if (second_half) {
+            F scale = splat<F>(k.end_scale) * mode.split;
+            x.v = x.v + scale * dv;
+            x.w = x.w + I * (scale * dw);
+        }
         F velocity[8] = {x.v.x, x.v.y, x.v.z, x.inverse_mass, x.w.x, x.w.y, x.w.z, x.unused};
         F place[8] = {dp.x, dp.y, dp.z, zero, dq.x, dq.y, dq.z, dq.w};
         F inertia[8] = {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz, zero, zero};
@@ -290,37 +302,5 @@ void settle_bodies(SolverBodies& bodies, int begin, int end) {
         F changes[8] = {change_v.x, change_v.y, change_v.z, zero, change_L.x, change_L.y, change_L.z, zero};
         scatter4<W>(floats_of(bodies.motion.data()), c.index, stride, 12, momentum);
         scatter8<W>(floats_of(bodies.motion.data()), c.index, stride, 24, changes);
-    }
-}
-
-// See Booking.
-template <int W>
-void book_joints(SolverBodies& bodies, Booking what, int begin, int end) {
-    using F = Wide<float, W>;
-    const F zero = splat<F>(0.0f);
-    for (int i = begin; i < end; i += W) {
-        Consecutive<W> c(i);
-        BlockLanes<W> y(bodies, i);
-        BodyBlock& b = y.block;
-        auto jointed = joint_mode(y.get(b.joints)).jointed > zero;
-        WideVelocity<F> x = load_velocity<W>(bodies.state.data(), c.index);
-        Vec3T<F> v = y.get(b.v_ref), w = y.get(b.w_ref);
-        Vec3T<F> added_v = select(jointed, x.v - v, zero_vector<F>()),
-                 added_w = select(jointed, x.w - w, zero_vector<F>());
-        if (what == Booking::contacts_warm) {
-            y.put(b.dv, added_v);
-            y.put(b.dw, added_w);
-            continue;
-        }
-        if (what == Booking::joints_solved) {
-            added_v = select(jointed, added_v - y.get(b.dv), zero_vector<F>());
-            added_w = select(jointed, added_w - y.get(b.dw), zero_vector<F>());
-        }
-        Vec3T<F> dp;
-        QuatT<F> dq;
-        load_displacement<W>(bodies.state.data(), c.index, dp, dq);
-        y.put(b.L, y.get(b.L) + apply_principal(multiply(dq, y.get(b.q0)), y.get(b.inertia), added_w));
-        y.put(b.v_ref, v + added_v);
-        y.put(b.w_ref, w + added_w);
     }
 }

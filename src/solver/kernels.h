@@ -8,7 +8,6 @@
 
 #include "solver/bodies.h"
 #include "solver/contact.h"
-#include "solver/joint.h"
 
 namespace lendulet {
 
@@ -20,6 +19,10 @@ struct SubstepConstants {
     float bounce_speed;  // slower impacts do not bounce, m/s
     bool joints;         // whether there are any
     bool moved;          // bodies were displaced since the last relax or prepare: impacts shift them
+    bool first, last;    // substep of the step
+    // Bodies whose kick is split: by what their constraints' changes in the last substep are multiplied when they are
+    // repeated in this one, and when half of them is added at the end of the step.
+    float repeat_scale, end_scale;
 };
 
 // Manifolds of one colour and one size class: `count` of them, named by `order`, in rows from `rows` on.
@@ -30,34 +33,6 @@ struct ContactGroup {
     int count;
     const uint32_t* order;  // indices of the records
     std::byte* rows;
-};
-
-// Joints of one colour, one class and the same moved sides.
-struct JointGroup {
-    JointClass type;
-    bool moved_a, moved_b;  // the other side is static or kinematic: not stored
-    int32_t filler;
-    int count;
-    const uint32_t* order;  // indices of the records
-    std::byte* rows;
-};
-
-// Joints of one class: blocks [begin, end) of a group.
-struct JointKernels {
-    using Pass = void (*)(const JointGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
-    size_t row_bytes;  // of one block
-    void (*prepare)(const JointGroup&, const JointRecord*, const SolverBodies&, int begin, int end);
-    Pass warm_start, solve;  // before the drift
-    Pass warm_relax, relax;  // after it
-    void (*store)(const JointGroup&, JointRecord*, int begin, int end);
-};
-
-// What is booked for bodies with joints: what joints just added to the velocities becomes part of the motion, so that
-// contacts alone account for the rest, which their warm start repeats.
-enum class Booking {
-    contacts_warm,   // what differs from the booked velocities is the contacts' warm start
-    joints_solved,   // joints added to that
-    joints_relaxed,  // joints alone added to the booked velocities
 };
 
 struct SolverKernels {
@@ -73,12 +48,9 @@ struct SolverKernels {
 
     // Bodies [begin, end), both multiples of 16. `begin_step` before the first kick, `settle` after the last relax.
     void (*begin_step)(SolverBodies&, int begin, int end);
-    void (*kick)(SolverBodies&, const SubstepConstants&, bool first, int begin, int end);
+    void (*kick)(SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*drift)(SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*settle)(SolverBodies&, int begin, int end);
-    void (*book_joints)(SolverBodies&, Booking what, int begin, int end);
-
-    JointKernels joints[joint_classes];
 };
 
 inline int row_class(int points) { return points > 2 ? 2 : points - 1; }

@@ -3,7 +3,6 @@
 #include <type_traits>
 
 #include "math/wide/gather.h"
-#include "math/wide/trigonometry.h"
 #include "math/wide/wide.h"
 #include "solver/kernels.h"
 
@@ -13,12 +12,6 @@ namespace {
 #include "solver/contact_rows.inl"
 
 #include "solver/body_rows.inl"
-
-#include "solver/joint_block.inl"
-
-#include "solver/joint_rows.inl"
-
-#include "solver/joint_passes.inl"
 
 template <int W>
 void prepare_group(const ContactGroup& g, const ContactRecord* records, const SolverBodies& bodies, int begin,
@@ -40,17 +33,6 @@ void store_group(const ContactGroup& g, ContactRecord* records, int begin, int e
     else store_rows<W, 4>(g, records, begin, end);
 }
 
-template <int W, JointClass C>
-constexpr JointKernels make_joint_kernels() {
-    return {sizeof(JointRow<W, C>),
-            prepare_joints<W, C>,
-            run_joints<W, C, JointPass::warm_start>,
-            run_joints<W, C, JointPass::solve>,
-            run_joints<W, C, JointPass::warm_relax>,
-            run_joints<W, C, JointPass::relax>,
-            store_joints<W, C>};
-}
-
 template <int W>
 constexpr SolverKernels make_kernels() {
     return {W,
@@ -63,11 +45,7 @@ constexpr SolverKernels make_kernels() {
             begin_bodies<W>,
             kick_bodies<W>,
             drift_bodies<W>,
-            settle_bodies<W>,
-            book_joints<W>,
-            {make_joint_kernels<W, JointClass::ball>(), make_joint_kernels<W, JointClass::limited_ball>(),
-             make_joint_kernels<W, JointClass::hinge>(), make_joint_kernels<W, JointClass::driven_hinge>(),
-             make_joint_kernels<W, JointClass::slider>(), make_joint_kernels<W, JointClass::fixed>()}};
+            settle_bodies<W>};
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ SubstepConstants substep_constants(const SolverSettings& settings) {
     k.bias_rate = contact_bias * k.inverse_h;
     k.leak = contact_leak;
     k.bounce_speed = bounce_threshold_substeps * settings.gravity * k.h + 1e-3f;
-    k.joints = k.moved = false;
+    k.joints = k.moved = k.first = k.last = false;
+    k.repeat_scale = k.end_scale = 1.0f;
     return k;
 }
 
@@ -54,9 +55,9 @@ void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord*
     });
 }
 
-void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointRecord* joints, int count,
-                            ContactList contacts) {
-    joints_.prepare(tasks, bodies, joints, count, contacts, kernels_, scalar_);
+void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointRecord* joints, int count, ContactList contacts,
+                            JointReuse reuse) {
+    joints_.prepare(tasks, bodies, joints, count, contacts, reuse);
 }
 
 void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
@@ -66,17 +67,18 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
     k.joints = !joints_.empty();
     for_each_body_block(tasks, range, [&](int begin, int end) { kernels_.begin_step(bodies, begin, end); });
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        const bool first = substep == 0;
+        k.first = substep == 0;
+        k.last = substep == settings.substeps - 1;
+        k.repeat_scale = substep == 1 ? 2.0f : 1.0f;  // the first substep began with half a kick
+        k.end_scale = settings.substeps > 1 ? 0.5f : 1.0f;
         k.moved = resolve_impacts(bodies, records, bouncing_.data(), bouncing_.count(), k);
-        for_each_body_block(tasks, range, [&](int begin, int end) { kernels_.kick(bodies, k, first, begin, end); });
-        if (first)
+        for_each_body_block(tasks, range, [&](int begin, int end) { kernels_.kick(bodies, k, begin, end); });
+        if (k.first)
             for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
                 kernels.warm_start(g, bodies, k, begin, end);
             });
-        if (k.joints) {
-            if (first) joints_.after_contact_warm_start(tasks, bodies);
-            joints_.biased(tasks, bodies, k);
-        }
+        if (k.joints && k.first) joints_.warm_start(tasks, bodies);
+        if (k.joints) joints_.biased(tasks, bodies, k);
         for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
             kernels.solve(g, bodies, k, begin, end);
         });

@@ -13,7 +13,7 @@
 #include "solver/bodies.h"
 #include "solver/colouring.h"
 #include "solver/contact.h"
-#include "solver/joint_solver.h"
+#include "solver/joints/joint_solver.h"
 #include "solver/kernels.h"
 
 namespace lendulet {
@@ -39,15 +39,16 @@ public:
     Solver(const Memory* memory, int width)
         : schedule_(memory),
           bouncing_(memory),
-          joints_(memory),
+          joints_(memory, width),
           kernels_(solver_kernels(width)),
           scalar_(solver_kernels(1)) {}
 
     // Colours the manifolds that `list` names and packs them into rows.
     void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, const uint32_t* list, int count);
     // Colours the joints and packs them; after prepare() and with the same contacts, in every step. `joints` must stay
-    // until store_joints().
-    void prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointRecord* joints, int count, ContactList contacts);
+    // until store_joints(), and until the next call where that one reuses them.
+    void prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointRecord* joints, int count, ContactList contacts,
+                        JointReuse reuse = {});
     // Runs the substeps; bodies of the range move: all that the contacts and joints given name, and others as well.
     void solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
                BodyRange range);

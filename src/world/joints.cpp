@@ -1,7 +1,8 @@
 // Joints: checks, adding and removing, what they report, and their way into the solver's records and back.
 #include <string>
 
-#include "solver/joint.h"
+#include "base/hash.h"
+#include "solver/joints/joint.h"
 #include "world/validate.h"
 #include "world/world_data.h"
 
@@ -106,23 +107,17 @@ Vec3 velocity_at(const WorldData& world, uint32_t body, Position point) {
 
 // --- to the solver
 
-// From A's centre of mass to B's, with what rounding took from their positions.
-Vec3 between(const WorldData& world, uint32_t a, uint32_t b) {
-    const BodyStore& bodies = world.bodies;
-    return (bodies.pose[b].position - bodies.pose[a].position) - (bodies.momenta[b].x_low - bodies.momenta[a].x_low);
-}
-
 JointClass class_of(const JointInfo& j) {
-    bool driven = !j.limit.free() || j.motor.max_force > 0.0f || j.spring.stiffness > 0.0f || j.spring.damping > 0.0f;
+    bool driven = j.motor.max_force > 0.0f || j.spring.stiffness > 0.0f || j.spring.damping > 0.0f;
     switch (j.type) {
         case JointType::ball:
             // A cone without width is a hinge whose angle is the twist.
-            if (j.swing_limit == 0.0f) return j.twist_limit.free() ? JointClass::hinge : JointClass::driven_hinge;
+            if (j.swing_limit == 0.0f) return j.twist_limit.free() ? JointClass::hinge : JointClass::limited_hinge;
             return j.swing_limit <= pi || !j.twist_limit.free() ? JointClass::limited_ball : JointClass::ball;
         case JointType::hinge:
-            return driven ? JointClass::driven_hinge : JointClass::hinge;
+            return driven ? JointClass::driven_hinge : j.limit.free() ? JointClass::hinge : JointClass::limited_hinge;
         case JointType::slider:
-            return JointClass::slider;
+            return driven ? JointClass::driven_slider : JointClass::slider;
         case JointType::fixed:
             break;
     }
@@ -132,14 +127,22 @@ JointClass class_of(const JointInfo& j) {
 void put(float* p, Vec3 v) { p[0] = v.x, p[1] = v.y, p[2] = v.z; }
 void put(float* p, Quat q) { p[0] = q.x, p[1] = q.y, p[2] = q.z, p[3] = q.w; }
 
-// One side: bodies that are not packed share an entry that stands unturned, so their own rotation goes into the frame.
+// One side: those of bodies that are not packed are given in the world.
 void put_side(const WorldData& world, uint32_t body, const Transform& frame, float* arm, float* rotation,
               int32_t& index) {
-    const BodyInfo& info = world.bodies.info[body];
-    index = info.solver_index;
-    Quat q = index == static_body ? world.bodies.pose[body].orientation : Quat{};
-    put(arm, rotate(q, frame.translation));
-    put(rotation, q * frame.rotation);
+    index = world.bodies.info[body].solver_index;
+    if (index == static_body) {
+        Pose pose = world.bodies.pose[body] * frame;
+        put(arm, from_origin(pose.position));
+        put(rotation, pose.orientation);
+    } else {
+        put(arm, frame.translation);
+        put(rotation, frame.rotation);
+    }
+}
+void put_sides(const WorldData& world, const JointInfo& j, JointRecord& r) {
+    put_side(world, j.body_a, j.frame_a, r.arm_a, r.frame_a, r.body_a);
+    put_side(world, j.body_b, j.frame_b, r.arm_b, r.frame_b, r.body_b);
 }
 
 void put_bounds(JointRecord& r, const JointInfo& j) {
@@ -159,32 +162,47 @@ void put_bounds(JointRecord& r, const JointInfo& j) {
 
 void put_impulses(JointRecord& r, const JointImpulses& i, float scale) {
     for (int k = 0; k < 3; ++k) {
-        r.linear_0[k] = scale * i.linear[0][k];
-        r.linear_1[k] = scale * i.linear[1][k];
-        r.angular_0[k] = scale * i.angular[0][k];
-        r.angular_1[k] = scale * i.angular[1][k];
+        r.linear[k] = scale * i.linear[k];
+        r.angular[k] = scale * i.angular[k];
     }
     r.limit_0 = scale * i.limit[0];
     r.limit_1 = scale * i.limit[1];
-    r.motor_0 = scale * i.motor[0];
-    r.motor_1 = scale * i.motor[1];
+    r.motor = scale * i.motor;
     r.spring = scale * i.spring;
-    r.old_flags = i.flags;
+    r.flags = i.flags;
 }
 
-void take_impulses(const JointRecord& r, JointImpulses& i) {
+// The part of a body whose place among the packed ones is known.
+int part_of(const WorldData& world, int32_t solver_body) {
+    int c = 0;
+    while (solver_body >= world.parts[c].bodies.end) ++c;
+    return c;
+}
+// One over the multiple of the setting's substeps that a joint takes, by its record.
+float substep_share(const WorldData& world, int record) {
+    int c = 0;
+    while (record >= world.parts[c].first_joint + world.parts[c].joint_count) ++c;
+    return 1.0f / static_cast<float>(1 << c);
+}
+
+// The impulses of a joint, solved now or not.
+JointImpulses impulses_of(const WorldData& world, uint32_t slot) {
+    if (world.joints.record[slot] < 0) return world.joints.impulses[slot];
+    const JointRecord& r = world.joint_records[static_cast<size_t>(world.joints.record[slot])];
+    JointImpulses i;
     for (int k = 0; k < 3; ++k) {
-        i.linear[0][k] = r.linear_0[k];
-        i.linear[1][k] = r.linear_1[k];
-        i.angular[0][k] = r.angular_0[k];
-        i.angular[1][k] = r.angular_1[k];
+        i.linear[k] = r.linear[k];
+        i.angular[k] = r.angular[k];
     }
     i.limit[0] = r.limit_0;
     i.limit[1] = r.limit_1;
-    i.motor[0] = r.motor_0;
-    i.motor[1] = r.motor_1;
+    i.motor = r.motor;
     i.spring = r.spring;
     i.flags = r.flags;
+    i.impulse = {r.impulse[0], r.impulse[1], r.impulse[2]};
+    i.angular_impulse = {r.angular_impulse[0], r.angular_impulse[1], r.angular_impulse[2]};
+    i.h = world.last_h * substep_share(world, world.joints.record[slot]);
+    return i;
 }
 
 bool awake(const WorldData& world, uint32_t body) {
@@ -192,10 +210,21 @@ bool awake(const WorldData& world, uint32_t body) {
     return info.type == BodyType::dynamic && !info.asleep;
 }
 
+// Takes impulses from the records, which are to be made anew.
+void drop_records(WorldData& world) {
+    for (uint32_t slot : world.active_joints) world.joints.impulses[slot] = impulses_of(world, slot);
+    for (uint32_t slot : world.active_joints) world.joints.record[slot] = -1;
+    world.active_joints.clear();
+    world.joint_records.clear();
+    world.joints_changed = true;
+}
+
 void remove_joint_at(WorldData& world, uint32_t slot) {
     const JointInfo& j = world.joints.info[slot];
     wake_body(world, j.body_a);
     wake_body(world, j.body_b);
+    drop_records(world);
+    world.joint_groups_changed = true;
     world.joints.remove(slot);
 }
 
@@ -227,6 +256,7 @@ Result<JointId> World::add_joint(const JointDef& def) {
     j.user_data = def.user_data;
     wake_body(world, j.body_a);
     wake_body(world, j.body_b);
+    world.joints_changed = world.joint_groups_changed = true;
     return world.joints.id(world.joints.add(j, def.name.substr(0, max_name)));
 }
 
@@ -245,6 +275,7 @@ Status World::set_motor(JointId id, Motor motor) {
         return bad_joint(call, "only hinges and sliders have a motor");
     if (Status s = check_motor(motor, call); !s) return s;
     j.motor = motor;
+    world.joints_changed = true;
     wake_body(world, j.body_a);
     wake_body(world, j.body_b);
     return {};
@@ -282,7 +313,7 @@ JointState World::joint(JointId id) const {
     if (!alive(id)) detail::fail(no_such(data_->joints.slots, id.generation, "joint", "joint"));
     const WorldData& world = *data_;
     const JointInfo& j = world.joints.info[id.index];
-    const JointReport& report = world.joints.report[id.index];
+    const JointImpulses report = impulses_of(world, id.index);
     JointPose pose = joint_pose(world, j);
     Quat q = relative_rotation(pose);
     Vec3 axis = rotate(pose.a.orientation, Vec3{1.0f, 0.0f, 0.0f});
@@ -319,43 +350,96 @@ void remove_joints_of(WorldData& world, uint32_t body) {
         remove_joint_at(world, slot);
 }
 
-// --- stages
+uint64_t hash_joints(const WorldData& world, uint64_t start) {
+    uint64_t h = hash_combine(start, world.joints.slots.order().size());
+    for (uint32_t slot : world.joints.slots.order()) {
+        const JointImpulses i = impulses_of(world, slot);
+        h = hash_floats(h, i.linear, 3);
+        h = hash_floats(h, i.angular, 3);
+        h = hash_floats(h, i.limit, 2);
+        h = hash_floats(h, &i.motor, 1);
+        h = hash_floats(h, &i.spring, 1);
+    }
+    return h;
+}
 
-void pack_joints(WorldData& world, float h) {
-    const JointStore& joints = world.joints;
-    world.active_joints.clear();
+// --- stage
+
+namespace {
+
+// What static and kinematic bodies' sides say may have changed.
+void renew_sides(WorldData& world) {
+    for (size_t i = 0; i < world.active_joints.size(); ++i) {
+        JointRecord& r = world.joint_records[i];
+        if (r.body_a == static_body || r.body_b == static_body)
+            put_sides(world, world.joints.info[world.active_joints[i]], r);
+    }
+}
+
+// Awake joints by class of substeps, stably.
+void list_joints(WorldData& world) {
+    JointStore& joints = world.joints;
+    auto class_of_joint = [&](const JointInfo& j) {
+        uint32_t moved = awake(world, j.body_a) ? j.body_a : j.body_b;
+        return awake(world, moved) ? part_of(world, world.bodies.info[moved].solver_index) : -1;
+    };
+    int counts[substep_classes] = {};
     for (uint32_t slot : joints.slots.order())
-        if (awake(world, joints.info[slot].body_a) || awake(world, joints.info[slot].body_b))
-            world.active_joints.push_back(slot);
-    world.joint_records.resize_unset(world.active_joints.size());
-    float scale = world.last_h > 0.0f ? h / world.last_h : 0.0f;
+        if (int c = class_of_joint(joints.info[slot]); c >= 0) ++counts[c];
+    int first = 0;
+    for (int c = 0; c < substep_classes; ++c) {
+        world.parts[c].first_joint = first;
+        world.parts[c].joint_count = counts[c];
+        first += counts[c];
+        counts[c] = 0;
+    }
+    world.active_joints.resize_unset(static_cast<size_t>(first));
+    world.joint_records.resize_unset(static_cast<size_t>(first));
+    for (uint32_t slot : joints.slots.order()) {
+        int c = class_of_joint(joints.info[slot]);
+        if (c < 0) continue;
+        joints.record[slot] = world.parts[c].first_joint + counts[c]++;
+        world.active_joints[static_cast<size_t>(joints.record[slot])] = slot;
+    }
+}
+
+bool same_bodies(const WorldData& world) {
+    for (int c = 0; c < substep_classes; ++c)
+        if (world.joint_bodies_ends[c] != world.parts[c].bodies.end) return false;
+    return world.joint_bodies.size() == world.awake.size() &&
+           std::memcmp(world.joint_bodies.data(), world.awake.data(), world.awake.size() * sizeof(uint32_t)) == 0;
+}
+
+}  // namespace
+
+JointReuse pack_joints(WorldData& world, float h) {
+    JointStore& joints = world.joints;
+    if (joints.count() == 0 && world.active_joints.empty()) return {};
+    JointReuse reuse{!world.joints_changed && same_bodies(world), world.last_h > 0.0f ? h / world.last_h : 0.0f};
+    if (reuse.same) {
+        renew_sides(world);
+        return reuse;
+    }
+    drop_records(world);
+    list_joints(world);
     world.tasks.for_each(world.active_joints.count(), 256, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i) {
             uint32_t slot = world.active_joints[static_cast<size_t>(i)];
             const JointInfo& j = joints.info[slot];
             JointRecord r{};
-            put_side(world, j.body_a, j.frame_a, r.arm_a, r.frame_a, r.body_a);
-            put_side(world, j.body_b, j.frame_b, r.arm_b, r.frame_b, r.body_b);
-            put(r.offset, between(world, j.body_a, j.body_b));
+            put_sides(world, j, r);
             r.type = class_of(j);
             put_bounds(r, j);
-            put_impulses(r, joints.impulses[slot], scale);
+            const JointImpulses& last = joints.impulses[slot];
+            put_impulses(r, last, last.h > 0.0f ? world.last_h * substep_share(world, i) / last.h : 0.0f);
             world.joint_records[static_cast<size_t>(i)] = r;
         }
     });
-}
-
-void unpack_joints(WorldData& world, float h) {
-    world.tasks.for_each(world.active_joints.count(), 256, [&](int begin, int end, int) {
-        for (int i = begin; i < end; ++i) {
-            uint32_t slot = world.active_joints[static_cast<size_t>(i)];
-            const JointRecord& r = world.joint_records[static_cast<size_t>(i)];
-            take_impulses(r, world.joints.impulses[slot]);
-            world.joints.report[slot] = {{r.impulse[0], r.impulse[1], r.impulse[2]},
-                                         {r.angular_impulse[0], r.angular_impulse[1], r.angular_impulse[2]},
-                                         h};
-        }
-    });
+    world.joint_bodies.clear();
+    world.joint_bodies.append(world.awake.data(), world.awake.size());
+    for (int c = 0; c < substep_classes; ++c) world.joint_bodies_ends[c] = world.parts[c].bodies.end;
+    world.joints_changed = false;
+    return reuse;
 }
 
 }  // namespace lendulet

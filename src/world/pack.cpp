@@ -33,6 +33,10 @@ void pack_body(WorldData& world, size_t i, float dt) {
     put(start.v, bodies.velocity(slot));
     put(start.w, bodies.angular_velocity(slot));
     world.solver_bodies.start[k] = start;
+    BodyPlace place{};
+    put(place.x, from_origin(bodies.pose[slot].position));
+    put(place.x_low, bodies.momenta[slot].x_low);
+    world.solver_bodies.place[k] = place;
     BodyState s{};
     s.inverse_mass = dynamic ? mass.inverse_mass : 0.0f;
     s.dq[3] = 1.0f;

@@ -31,16 +31,18 @@ private:
     Clock::time_point last_ = Clock::now();
 };
 
-void prepare_solvers(WorldData& world) {
+void prepare_solvers(WorldData& world, float dt) {
+    JointReuse reuse = pack_joints(world, dt / static_cast<float>(world.config.solver_steps));
     const ContactRecord* records = world.records.data();
     for (int c = 0; c < substep_classes; ++c) {
         const SolverPart& part = world.parts[c];
+        ContactList contacts{records, world.active.data() + part.first_contact, part.contact_count, dt};
         world.solvers[c].prepare(world.tasks, world.solver_bodies, records, world.active.data() + part.first_contact,
                                  part.contact_count);
+        world.solvers[c].prepare_joints(world.tasks, world.solver_bodies,
+                                        world.joint_records.data() + part.first_joint, part.joint_count, contacts,
+                                        reuse);
     }
-    world.solvers[0].prepare_joints(world.tasks, world.solver_bodies, world.joint_records.data(),
-                                    world.joint_records.count(),
-                                    {records, world.active.data(), world.parts[0].contact_count});
 }
 
 // `last`: the step is the last part of an update, after which applied forces end.
@@ -48,7 +50,6 @@ void step(WorldData& world, float dt, bool last) {
     TaskPool::Session session(world.tasks);
     StageClock clock(world.statistics);
     const SolverSettings settings{dt, world.config.solver_steps, length(world.config.gravity)};
-    const float h = dt / static_cast<float>(settings.substeps);
 
     limit_motion(world);
     update_bounds(world, dt);
@@ -61,11 +62,11 @@ void step(WorldData& world, float dt, bool last) {
     clock.lap(Stage::narrow_phase);
     update_islands(world, dt);
     clock.lap(Stage::islands);
+    find_joint_groups(world);
     choose_substeps(world, dt);
     pack_bodies(world, dt);
     pack_contacts(world);
-    pack_joints(world, h);
-    prepare_solvers(world);
+    prepare_solvers(world, dt);
     clock.lap(Stage::prepare);
     for (int c = 0; c < substep_classes; ++c) {
         SolverSettings s = settings;
@@ -73,10 +74,11 @@ void step(WorldData& world, float dt, bool last) {
         world.solvers[c].solve(world.tasks, s, world.solver_bodies, world.records.data(), world.parts[c].bodies);
     }
     clock.lap(Stage::solve);
-    for (Solver& solver : world.solvers) solver.store(world.tasks, world.records.data());
-    world.solvers[0].store_joints(world.tasks);
+    for (Solver& solver : world.solvers) {
+        solver.store(world.tasks, world.records.data());
+        solver.store_joints(world.tasks);
+    }
     unpack_contacts(world);
-    unpack_joints(world, h);
     remember_poses(world);
     unpack_bodies(world, dt, last);
     stop_at_impacts(world, dt);

@@ -1,8 +1,8 @@
 // Which islands take more substeps than the world's setting. A contact that carries R times the weight of its lighter
 // body sinks by 2 (leak / bias) R g h^2, and a column of size w and height H under it buckles for R (H / w)^2 g h^2 of
 // about w (docs/solver.md); both shrink with the square of the substep. Small islands that need it therefore take 2, 4
-// or 8 times as many substeps; large ones, where that would cost, and those with joints or on bodies that are moved by
-// hand keep to the setting.
+// or 8 times as many substeps, and so do small groups of jointed bodies with loads or loops (joint_groups.cpp); large
+// ones, where that would cost, those with other joints and those on bodies that are moved by hand keep to the setting.
 //
 // Reads this step's contacts with their warm-start impulses, which are in units of the world's substep. Leaves the
 // bodies' slots in the records, and each body's class in `island_loads`.
@@ -41,9 +41,11 @@ void entry(WorldData& world, uint32_t slot) {
          0.0f,
          height,
          height,
+         0,
          known ? l.substeps : uint8_t{0},
          known ? l.waited : uint8_t{0},
          0,
+         false,
          false,
          false};
 }
@@ -60,6 +62,7 @@ void join(Array<IslandLoad>& loads, uint32_t a, uint32_t b) {
     x.buckling = maximum(x.buckling, y.buckling);
     x.lowest = minimum(x.lowest, y.lowest);
     x.highest = maximum(x.highest, y.highest);
+    x.least = x.least > y.least ? x.least : y.least;
     x.before = x.before > y.before ? x.before : y.before;
     x.waited = x.waited < y.waited ? x.waited : y.waited;
     x.tied |= y.tied;
@@ -81,17 +84,53 @@ int class_for(const IslandLoad& l, float gravity, float dt, int substeps, float 
     return c;
 }
 
+int larger(int a, int b) { return a > b ? a : b; }
+
 // Sets the class of a root: up at once, down one at a time and with patience.
 void decide(IslandLoad& l, float gravity, float dt, int substeps) {
     l.decided = true;
-    if (l.tied || !(gravity > 0.0f)) return;
-    int c = class_for(l, gravity, dt, substeps, 1.0f), kept = l.before;
-    bool bearable = kept > 0 && class_for(l, gravity, dt, substeps, kept_reserve) < kept;
-    l.waited = bearable ? static_cast<uint8_t>(l.waited + 1) : uint8_t{0};
-    if (l.waited >= patience) --kept, l.waited = 0;
-    if (c < kept) c = kept;
+    if (l.tied) return;
+    int c = l.least;
+    if (gravity > 0.0f) {
+        int kept = l.before;
+        c = larger(c, class_for(l, gravity, dt, substeps, 1.0f));
+        bool bearable = kept > 0 && class_for(l, gravity, dt, substeps, kept_reserve) < kept;
+        l.waited = bearable ? static_cast<uint8_t>(l.waited + 1) : uint8_t{0};
+        if (l.waited >= patience) --kept, l.waited = 0;
+        c = larger(c, kept);
+    }
     while (c > 0 && (l.contacts << c) > most_contacts) --c;
     l.substeps = static_cast<uint8_t>(c);
+}
+
+// Awake groups of bodies whose joints need more substeps, each as one island with its contacts.
+void add_joint_groups(WorldData& world) {
+    Array<IslandLoad>& loads = world.island_loads;
+    for (const JointGroupLoad& g : world.joint_groups) {
+        const JointedBody* list = world.jointed_bodies.data() + g.first;
+        if (world.bodies.info[list[0].slot].asleep) continue;
+        for (int i = 0; i < g.count; ++i) {
+            entry(world, list[i].slot);
+            loads[list[i].slot].in_group = true;
+            join(loads, list[0].slot, list[i].slot);
+        }
+        IslandLoad& l = loads[root(loads, list[0].slot)];
+        l.contacts += g.joints;
+        l.sinking = maximum(l.sinking, 0.5f * g.sinking);
+        l.least = g.least > l.least ? g.least : l.least;
+    }
+}
+
+// Islands with joints of other groups, or joints to kinematic bodies in motion, keep to the setting.
+void tie_other_joints(WorldData& world) {
+    Array<IslandLoad>& loads = world.island_loads;
+    if (world.active.empty() && world.joint_groups.empty()) return;
+    auto mark = [&](uint32_t slot, uint32_t other) {
+        if (loads[slot].step != world.steps + 1) return;
+        loads[root(loads, slot)].tied |= !loads[slot].in_group ||
+                  (world.bodies.info[other].type == BodyType::kinematic && moves(world, other));
+    };
+    world.joints.for_each_link([&](uint32_t a, uint32_t b) { mark(a, b), mark(b, a); });
 }
 
 }  // namespace
@@ -136,13 +175,16 @@ void choose_substeps(WorldData& world, float dt) {
             l.buckling = maximum(l.buckling, ratio / (size * size * size));
         }
     }
-    auto mark = [&](uint32_t slot) {
-        if (loads[slot].step == world.steps + 1) loads[root(loads, slot)].tied = true;
-    };
-    world.joints.for_each_link([&](uint32_t a, uint32_t b) { mark(a), mark(b); });
-    for (uint32_t i : world.active) {
-        IslandLoad& l = loads[root(loads, static_cast<uint32_t>(world.records[i].body_b))];
+    add_joint_groups(world);
+    tie_other_joints(world);
+    auto decide_for = [&](uint32_t slot) {
+        IslandLoad& l = loads[root(loads, slot)];
         if (!l.decided) decide(l, gravity, dt, world.config.solver_steps);
+    };
+    for (uint32_t i : world.active) decide_for(static_cast<uint32_t>(world.records[i].body_b));
+    for (const JointGroupLoad& g : world.joint_groups) {
+        uint32_t slot = world.jointed_bodies[static_cast<size_t>(g.first)].slot;
+        if (!bodies.info[slot].asleep) decide_for(slot);
     }
 }
 

@@ -79,6 +79,11 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       overlaps(&memory),
       active_joints(&memory),
       joint_records(&memory),
+      joint_bodies(&memory),
+      joint_groups(&memory),
+      jointed_bodies(&memory),
+      jointed_seen(&memory),
+      jointed_mass(&memory),
       awake(&memory),
       solver_bodies(&memory),
       island_loads(&memory),
@@ -233,7 +238,7 @@ uint64_t World::hash() const {
         h = hash_floats(h, r.friction_impulse, 3);
         h = hash_floats(h, &r.twist_impulse, 1);
     }
-    return world.joints.hash(h);
+    return hash_joints(world, h);
 }
 
 }  // namespace lendulet

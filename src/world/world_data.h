@@ -14,7 +14,7 @@
 #include "lendulet/world.h"
 #include "solver/bodies.h"
 #include "solver/contact.h"
-#include "solver/joint.h"
+#include "solver/joints/joint.h"
 #include "solver/solver.h"
 #include "world/continuous.h"
 #include "world/narrow/kernels.h"
@@ -44,16 +44,32 @@ struct IslandLoad {
     int contacts;
     float sinking, buckling;  // greatest load ratio of its contacts, per size and per size cubed
     float lowest, highest;    // positions along gravity, times gravity
+    uint8_t least;            // class that its joints ask for
     uint8_t before;           // class in the step before
     uint8_t waited;           // steps since when fewer substeps would do
     uint8_t substeps;         // class
-    bool tied, decided;       // tied: to joints or to a kinematic body in motion, which take the setting's substeps
+    bool tied, decided;       // tied: to other joints or a kinematic body in motion, which take the setting's substeps
+    bool in_group;            // of the body itself: in one of WorldData::joint_groups
 };
 
-// Stretches of the packed bodies and of the active contacts that are solved together.
+// A body with joints, by slot, and the one that it was reached from: an index in its group, or -1.
+struct JointedBody {
+    uint32_t slot;
+    int32_t parent;
+};
+
+// Jointed bodies that need more substeps, see joint_groups.cpp.
+struct JointGroupLoad {
+    int first, count, joints;  // bodies in WorldData::jointed_bodies
+    float sinking;             // as in IslandLoad, of two bodies under half the load each
+    uint8_t least;
+};
+
+// Stretches of the packed bodies, the active contacts and the active joints that are solved together.
 struct SolverPart {
     BodyRange bodies;
     int first_contact, contact_count;
+    int first_joint, joint_count;
 };
 
 struct WorldData {
@@ -89,16 +105,27 @@ struct WorldData {
     Array<uint32_t> active;  // those of them that are solved, by class of substeps: at least one body awake
     Array<uint32_t> unsorted;
     Array<Overlap> overlaps;
-    Array<uint32_t> active_joints;  // slots of the joints that are solved, in creation order
+    // Joints that are solved, kept while they and the awake bodies stay the same.
+    Array<uint32_t> active_joints;  // slots, by class of substeps and then in creation order
     Array<JointRecord> joint_records;
+    Array<uint32_t> joint_bodies;                // the awake bodies that the records name, ...
+    int joint_bodies_ends[substep_classes] = {};  // ... and where their classes end among the packed ones
+    bool joints_changed = true;                  // a joint came, went or was set
+
+    // Groups of jointed bodies that need more substeps, with their bodies one after the other.
+    Array<JointGroupLoad> joint_groups;
+    Array<JointedBody> jointed_bodies;
+    Array<uint32_t> jointed_seen;  // room to find them, by body slot
+    Array<float> jointed_mass;
+    bool joint_groups_changed = true;  // a joint came or went
 
     // This step's awake bodies, packed for the solver.
     Array<uint32_t> awake;  // slots, by class of substeps and then in order of slots
     SolverBodies solver_bodies;
     Array<IslandLoad> island_loads;  // by body slot
     SolverPart parts[substep_classes];
-    Solver solvers[substep_classes];  // joints are solved by the first
-    Array<uint32_t> island_parent;    // union-find over body slots
+    Solver solvers[substep_classes];
+    Array<uint32_t> island_parent;  // union-find over body slots
     Array<float> island_still;
 
     float last_h = 0.0f;  // substep that the stored impulses belong to
@@ -118,12 +145,13 @@ void begin_pair(WorldData& world, ColliderPair& pair);  // what does not change 
 void list_contacts(WorldData& world);                   // what later stages go through, in the order of pairs
 void find_contacts(WorldData& world, float dt);
 void update_islands(WorldData& world, float dt);
+void find_joint_groups(WorldData& world);
 void choose_substeps(WorldData& world, float dt);
 void pack_bodies(WorldData& world, float dt);
 void pack_contacts(WorldData& world);
-void pack_joints(WorldData& world, float h);
+// Returns what the solver may keep of the last step.
+JointReuse pack_joints(WorldData& world, float h);
 void unpack_contacts(WorldData& world);
-void unpack_joints(WorldData& world, float h);
 void unpack_bodies(WorldData& world, float dt, bool forces_end);
 void remember_poses(WorldData& world);
 void stop_at_impacts(WorldData& world, float dt);
@@ -132,6 +160,8 @@ void finish_step(WorldData& world, float dt);
 // 0 .. substep_classes - 1, for a body that is about to be packed; after choose_substeps().
 int substep_class(WorldData& world, uint32_t slot);
 
+// Mixes all warm-start impulses of joints into a hash, in creation order.
+uint64_t hash_joints(const WorldData& world, uint64_t start);
 // Removes the joints of a body that is about to be removed.
 void remove_joints_of(WorldData& world, uint32_t body);
 

@@ -80,7 +80,7 @@ public:
         int count = static_cast<int>(contacts.size());
         solver_.prepare(tasks_, solver_bodies_, contacts.data(), list.data(), count);
         solver_.prepare_joints(tasks_, solver_bodies_, records_.data(), static_cast<int>(records_.size()),
-                               {contacts.data(), list.data(), count});
+                               {contacts.data(), list.data(), count, dt});
         solver_.solve(tasks_, settings, solver_bodies_, contacts.data());
         solver_.store(tasks_, contacts.data());
         solver_.store_joints(tasks_);
@@ -146,7 +146,7 @@ public:
                                 b.L.x,           b.L.y,           b.L.z};
             h = hash_floats(h, values, 13);
         }
-        for (const JointRecord& r : joints) h = hash_floats(h, r.linear_0, 16);
+        for (const JointRecord& r : joints) h = hash_floats(h, r.linear, 10);
         return h;
     }
     const Solver& solver() const { return solver_; }
@@ -171,6 +171,9 @@ private:
             put(start.v, b.v);
             put(start.w, b.w());
             solver_bodies_.start[k] = start;
+            BodyPlace place{};
+            put(place.x, from_origin(b.position));
+            solver_bodies_.place[k] = place;
             Vec3 inverse{1.0f / b.inertia.x, 1.0f / b.inertia.y, 1.0f / b.inertia.z};
             SymMat3 m = rotate_diagonal(rotation_matrix<float>(QuatT<float>(b.orientation), 1.0f), inverse);
             solver_bodies_.inertia[k] = {{m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}, 0.0f, 0.0f};
@@ -188,18 +191,17 @@ private:
         records_ = joints;
         for (JointRecord& r : records_) {
             const RigBody &a = bodies[static_cast<size_t>(r.body_a)], &b = bodies[static_cast<size_t>(r.body_b)];
-            put(r.offset, b.position - a.position);
             pack_side(a, r.body_a, r.arm_a, r.frame_a);
             pack_side(b, r.body_b, r.arm_b, r.frame_b);
         }
         for (ContactRecord& c : contacts)
             for (int32_t body : {c.body_a, c.body_b}) solver_bodies_.motion[static_cast<size_t>(body)].free = 0.0f;
     }
-    // Static bodies share one unturned entry.
+    // The sides of static bodies are given in the world.
     static void pack_side(const RigBody& body, int32_t& index, float* arm, float* frame) {
         index = body.index;
         if (index != static_body) return;
-        put(arm, rotate(body.orientation, get(arm)));
+        put(arm, from_origin(body.position + rotate(body.orientation, get(arm))));
         put(frame, body.orientation * Quat{frame[0], frame[1], frame[2], frame[3]});
     }
     void unpack() {
@@ -218,7 +220,6 @@ private:
             joints[i].body_b = kept.body_b;
             for (int k = 0; k < 3; ++k) joints[i].arm_a[k] = kept.arm_a[k], joints[i].arm_b[k] = kept.arm_b[k];
             for (int k = 0; k < 4; ++k) joints[i].frame_a[k] = kept.frame_a[k], joints[i].frame_b[k] = kept.frame_b[k];
-            joints[i].old_flags = joints[i].flags;
         }
     }
 

@@ -1,22 +1,33 @@
-// A joint as the solver sees it for one step: 256 bytes in quads, so that wide kernels load it by transposes. The world
-// fills it, the solver reads it into rows and writes impulses back.
+// A joint as the solver sees it: 192 bytes in quads, so that wide kernels load it by transposes. The world fills it
+// when a set of joints starts to be solved and keeps it while the set stays the same; the solver reads it into rows and
+// writes impulses back after every step.
 //
 // Which rows a joint has is its class. Locked rows (three linear ones at the anchor, or two across a slider's axis, and
 // up to three angular ones) are solved together, directly; then bounded rows (a hinge's angle or slider's travel with
-// limit, motor and spring, or a ball joint's swing and twist) with the locked ones held.
+// limit, motor and spring, or a ball joint's swing and twist) with the locked ones held. What a joint does not use has
+// no place in its row: a hinge is free, limited or driven, each a class of its own.
 #pragma once
 
 #include <cstdint>
 
 namespace lendulet {
 
-enum class JointClass : int32_t { ball, limited_ball, hinge, driven_hinge, slider, fixed };
-inline constexpr int joint_classes = 6;
+enum class JointClass : int32_t {
+    ball,
+    limited_ball,
+    hinge,
+    limited_hinge,
+    driven_hinge,
+    slider,
+    driven_slider,
+    fixed
+};
+inline constexpr int joint_classes = 8;
 
 inline constexpr float unlimited = 1e30f;  // bound of a coordinate that has none; large, but finite in sums
 
-// The joint frame's x axis is the axis of hinges and sliders and the twist axis of ball joints. "Side" impulses come in
-// two sets: [0] of the biased pass, [1] of the relax pass.
+// The joint frame's x axis is the axis of hinges and sliders and the twist axis of ball joints. Sides whose body is not
+// packed (static_body) are given in the world: the anchor as a position, the frame as a rotation.
 struct alignas(64) JointRecord {
     float arm_a[3];        // anchor from A's centre of mass, in A's principal frame, m
     float swing_limit;     // ball joints: half angle of the cone, rad
@@ -24,34 +35,25 @@ struct alignas(64) JointRecord {
     float motor_velocity;  // target, m/s or rad/s
     float frame_a[4];      // rotation from the joint frame to A's principal frame
     float frame_b[4];
-    float offset[3];         // B's centre of mass minus A's at the start of the step, world axes, m
     float motor_force;       // largest, N or N m
+    float relaxation;        // share of its solution that a joint takes in a pass, 0 .. 1; set by the solver
+    float lower, upper;      // bounds of angle, travel or twist; +-unlimited where there are none
     int32_t body_a, body_b;  // solver bodies; at least one is moved by constraints
     JointClass type;
-    uint32_t flags;      // joint_split and joint_alone, set by the solver
-    float lower, upper;  // bounds of angle, travel or twist; +-unlimited where there are none
-    float relaxation;    // share of its solution that a joint takes in a pass, 0 .. 1; set by the solver
-    float unused1;
+    uint16_t flags, old_flags;  // joint_split and joint_alone, of this step and the one before; set by the solver
     float stiffness, damping, target, spring_force;  // spring_force: largest, N or N m
-    float linear_0[3], limit_0;   // impulses on B: locked linear rows; limit, or a ball joint's swing
-    float angular_0[3], limit_1;  // locked angular rows; a ball joint's twist limit
-    float linear_1[3], motor_0;   // as linear_0, angular_0, of the relax pass; motor in both passes
-    float angular_1[3], motor_1;
-    float spring;
-    uint32_t old_flags;  // flags under which the impulses above were found
-    float unused2, unused3;
-    float impulse[3];  // result: all of it on B in the last substep, world axes, N s ...
-    float unused4;
-    float angular_impulse[3];  // ... and N m s, about the anchor
-    float unused5;
-    float unused6[4];
+    float linear[3], limit_0;   // impulses on B: locked linear rows; limit, or a ball joint's swing
+    float angular[3], limit_1;  // locked angular rows; a ball joint's twist limit
+    float motor, spring, unused0, unused1;
+    float impulse[3], unused2;          // result: all of it on B in the last substep, world axes, N s ...
+    float angular_impulse[3], unused3;  // ... and N m s, about the anchor
 };
-static_assert(sizeof(JointRecord) == 256);
+static_assert(sizeof(JointRecord) == 192);
 
-// Applied forces act half before and half after the drift, because nothing but joints constrains the two bodies' group.
-inline constexpr uint32_t joint_split = 1;
+// Nothing but joints constrains the two bodies' group: see passes.inl.
+inline constexpr uint16_t joint_split = 1;
 // Neither body has another joint: one sweep solves it exactly, so it needs no softness.
-inline constexpr uint32_t joint_alone = 2;
+inline constexpr uint16_t joint_alone = 2;
 
 // Where joints share bodies, a sweep leaves slow modes unsolved; as for contacts these must be damped by giving up a
 // share of the impulse in every biased pass, with `bias` the share of the gap that is undone. See docs/solver.md.

@@ -77,19 +77,23 @@ LENDULET_FORCE_INLINE PointResponse<F> point_response(Vec3T<F> ra, Vec3T<F> rb, 
     return p;
 }
 
-// The two bodies of W joints: changes of velocity since the start of the step, and the velocities then.
+// The two bodies of W joints: changes of velocity since the start of the step, the velocities then (of B relative to
+// A), and what the joints' arms need.
 template <class F>
 struct JointPair {
-    WideVelocity<F> A, B, start_a, start_b;
+    WideVelocity<F> A, B;
+    Vec3T<F> start_v, start_wa, start_wb;
     SymMat3T<F> IA, IB;
     Vec3T<F> gyro_a, gyro_b;  // angular acceleration by the bodies' own spin
+    Vec3T<F> dpa, dpb;        // displacement and rotation since the start of the step
+    QuatT<F> dqa, dqb;
 
     LENDULET_FORCE_INLINE Vec3T<F> sliding(Vec3T<F> ra, Vec3T<F> rb) const {
-        return ((start_b.v - start_a.v) + (B.v - A.v)) + (cross(spin_b(), rb) - cross(spin_a(), ra));
+        return (start_v + (B.v - A.v)) + (cross(spin_b(), rb) - cross(spin_a(), ra));
     }
-    LENDULET_FORCE_INLINE Vec3T<F> turning() const { return (start_b.w - start_a.w) + (B.w - A.w); }
-    LENDULET_FORCE_INLINE Vec3T<F> spin_a() const { return start_a.w + A.w; }
-    LENDULET_FORCE_INLINE Vec3T<F> spin_b() const { return start_b.w + B.w; }
+    LENDULET_FORCE_INLINE Vec3T<F> turning() const { return (start_wb - start_wa) + (B.w - A.w); }
+    LENDULET_FORCE_INLINE Vec3T<F> spin_a() const { return start_wa + A.w; }
+    LENDULET_FORCE_INLINE Vec3T<F> spin_b() const { return start_wb + B.w; }
     LENDULET_FORCE_INLINE void push(Vec3T<F> ra, Vec3T<F> rb, Vec3T<F> P, Vec3T<F> T) {
         A.v = A.v - A.inverse_mass * P;
         A.w = A.w - IA * (cross(ra, P) + T);
@@ -98,17 +102,22 @@ struct JointPair {
     }
 };
 
-// The kick left each body's gyroscopic acceleration in the unused places of its state and inertia.
+// Of one body: all but the velocities at the start of the step. The kick left its gyroscopic acceleration in the unused
+// places of its state and inertia.
 template <int W>
-LENDULET_FORCE_INLINE SymMat3T<Wide<float, W>> load_inertia_and_gyro(const SolverBodies& bodies, const int32_t* i,
-                                                                     bool with_gyro, Vec3T<Wide<float, W>>& gyro) {
-    Wide<float, W> p[4], q[4];
-    gather4<W>(floats_of(bodies.inertia.data()), i, 8, 0, p);
-    gather4<W>(floats_of(bodies.inertia.data()), i, 8, 4, q);
-    if (with_gyro) {
-        Wide<float, W> d[4];
-        gather4<W>(floats_of(bodies.state.data()), i, 16, 8, d);
-        gyro = {q[2], q[3], d[3]};
-    }
-    return {p[0], p[1], p[2], p[3], q[0], q[1]};
+LENDULET_FORCE_INLINE void load_joint_body(const SolverBodies& bodies, const int32_t* i,
+                                           WideVelocity<Wide<float, W>>& x, Vec3T<Wide<float, W>>& dp,
+                                           QuatT<Wide<float, W>>& dq, SymMat3T<Wide<float, W>>& I,
+                                           Vec3T<Wide<float, W>>& gyro) {
+    using F = Wide<float, W>;
+    F p[4], q[4], m[4], n[4];
+    x = load_velocity<W>(bodies.state.data(), i);
+    gather4<W>(floats_of(bodies.state.data()), i, 16, 8, p);
+    gather4<W>(floats_of(bodies.state.data()), i, 16, 12, q);
+    gather4<W>(floats_of(bodies.inertia.data()), i, 8, 0, m);
+    gather4<W>(floats_of(bodies.inertia.data()), i, 8, 4, n);
+    dp = {p[0], p[1], p[2]};
+    dq = {q[0], q[1], q[2], q[3]};
+    I = {m[0], m[1], m[2], m[3], n[0], n[1]};
+    gyro = {n[2], n[3], p[3]};
 }
