@@ -51,6 +51,7 @@ public:
         int listed = changes.listed_below(common);
         int gone = old_count - common, fresh = changes.count - common;
         bool few = (static_cast<int64_t>(listed) + gone + fresh) * share < changes.count;
+        touched_.reserve(static_cast<size_t>(changes.count / share) + 1);  // so that later updates need not grow it
         if (few) {
             touched_.clear();
             for (int i = 0; i < listed + gone; ++i) {

@@ -52,6 +52,8 @@ public:
     uint32_t generation(uint32_t slot) const { return generation_[slot]; }
     size_t capacity() const { return generation_.size(); }
     int count() const { return order_.count(); }
+    // Rises with the time of creation; valid until the next removal.
+    uint32_t place(uint32_t slot) const { return place_[slot]; }
     uint32_t in_order(int index) const { return order_[static_cast<size_t>(index)]; }  // slots by creation
     const Array<uint32_t>& order() const { return order_; }
 

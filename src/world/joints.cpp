@@ -192,10 +192,17 @@ bool awake(const WorldData& world, uint32_t body) {
     return info.type == BodyType::dynamic && !info.asleep;
 }
 
+// Joints may keep the colliders of their bodies apart.
+void joints_changed(WorldData& world, const JointInfo& j) {
+    world.movers.joints_changed = true;
+    if (!j.collide_connected) world.rejoined.push_back({j.body_a, j.body_b});
+}
+
 void remove_joint_at(WorldData& world, uint32_t slot) {
     const JointInfo& j = world.joints.info[slot];
     wake_body(world, j.body_a);
     wake_body(world, j.body_b);
+    joints_changed(world, j);
     world.joints.remove(slot);
 }
 
@@ -227,6 +234,7 @@ Result<JointId> World::add_joint(const JointDef& def) {
     j.user_data = def.user_data;
     wake_body(world, j.body_a);
     wake_body(world, j.body_b);
+    joints_changed(world, j);
     return world.joints.id(world.joints.add(j, def.name.substr(0, max_name)));
 }
 
@@ -324,11 +332,10 @@ void remove_joints_of(WorldData& world, uint32_t body) {
 void pack_joints(WorldData& world, float h) {
     const JointStore& joints = world.joints;
     world.active_joints.clear();
-    for (uint32_t slot : joints.slots.order())
+    for (uint32_t slot : world.movers.joints)
         if (awake(world, joints.info[slot].body_a) || awake(world, joints.info[slot].body_b))
             world.active_joints.push_back(slot);
     world.joint_records.resize_unset(world.active_joints.size());
-    float scale = world.last_h > 0.0f ? h / world.last_h : 0.0f;
     world.tasks.for_each(world.active_joints.count(), 256, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i) {
             uint32_t slot = world.active_joints[static_cast<size_t>(i)];
@@ -339,7 +346,8 @@ void pack_joints(WorldData& world, float h) {
             put(r.offset, between(world, j.body_a, j.body_b));
             r.type = class_of(j);
             put_bounds(r, j);
-            put_impulses(r, joints.impulses[slot], scale);
+            const float last_h = joints.report[slot].h;
+            put_impulses(r, joints.impulses[slot], last_h > 0.0f ? h / last_h : 0.0f);
             world.joint_records[static_cast<size_t>(i)] = r;
         }
     });

@@ -106,7 +106,7 @@ void choose_substeps(WorldData& world, float dt) {
     world.active.clear();
     for (uint32_t i : world.touching) {
         ContactRecord& r = world.records[i];
-        const ColliderPair& p = world.pairs.now[r.pair];
+        const ColliderPair& p = world.pairs.pairs[r.pair];
         bool flipped = (r.flags & contact_flipped) != 0;
         uint32_t a = world.colliders.info[flipped ? p.b : p.a].body, b = world.colliders.info[flipped ? p.a : p.b].body;
         const BodyInfo &info_a = bodies.info[a], &info_b = bodies.info[b];
@@ -139,7 +139,7 @@ void choose_substeps(WorldData& world, float dt) {
     auto mark = [&](uint32_t slot) {
         if (loads[slot].step == world.steps + 1) loads[root(loads, slot)].tied = true;
     };
-    world.joints.for_each_link([&](uint32_t a, uint32_t b) { mark(a), mark(b); });
+    for (uint32_t joint : world.movers.joints) mark(world.joints.info[joint].body_a), mark(world.joints.info[joint].body_b);
     for (uint32_t i : world.active) {
         IslandLoad& l = loads[root(loads, static_cast<uint32_t>(world.records[i].body_b))];
         if (!l.decided) decide(l, gravity, dt, world.config.solver_steps);
