@@ -275,6 +275,7 @@ Result<BodyId> World::add_static_body(const StaticBodyDef& def) {
     world.bodies.set_user_pose(slot, {def.position, q.value()});
     store_colliders(world, slot, colliders.value());
     world.bodies.info[slot].placed_at = static_cast<uint32_t>(world.steps);
+    world.bodies.info[slot].solver_index = static_body;
     world.fixed_changed = true;
     return world.bodies.id(slot);
 }

@@ -40,6 +40,28 @@ std::string check_pairs(const WorldData& w) {
     return hung == 2 * w.pairs.count() ? "" : "a pair hangs on a collider that is gone";
 }
 
+// Right after a step the table has all pairs that it should have, and no others.
+std::string check_completeness(const WorldData& w) {
+    bool told = !w.fixed_changed && w.changed_boxes.empty() && w.forgotten.empty() && w.rejoined.empty();
+    if (!told) return {};
+    if (const char* problem = w.broad_phase.check(); *problem) return problem;
+    int found = 0;
+    Array<uint32_t> near;
+    for (const BroadBox& box : w.moving_boxes) {
+        near.clear();
+        w.broad_phase.query_box(box.lower, box.upper, near);
+        for (uint32_t other : near) {
+            bool other_moves = w.bodies.info[w.colliders.info[other].body].type != BodyType::fixed;
+            if (other == box.index || (other_moves && other < box.index)) continue;
+            const BoxPair p{other < box.index ? other : box.index, other < box.index ? box.index : other};
+            if (!wanted(w, p)) continue;
+            ++found;
+            if (w.pairs.find(p.a, p.b) == no_pair) return "two colliders whose boxes overlap are no pair";
+        }
+    }
+    return found == w.pairs.count() ? "" : "two colliders are a pair though their boxes do not overlap";
+}
+
 std::string check_movers(const WorldData& w) {
     for (size_t i = 0; i < w.movers.bodies.size(); ++i) {
         uint32_t slot = w.movers.bodies[i];
@@ -73,6 +95,7 @@ std::string World::check() const {
     }
     if (std::string problem = check_movers(w); !problem.empty()) return problem;
     if (std::string problem = check_pairs(w); !problem.empty()) return problem;
+    if (std::string problem = check_completeness(w); !problem.empty()) return problem;
     if (std::string problem = check_contacts(w, w.touching, true); !problem.empty()) return problem;
     return check_contacts(w, w.resting.records, false);
 }

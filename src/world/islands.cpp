@@ -147,6 +147,7 @@ void lay_to_rest(WorldData& world) {
         BodyInfo& info = world.bodies.info[slot];
         if (info.type != BodyType::dynamic || !rests(world, slot)) continue;
         info.asleep = true;
+        info.capped = false;
         world.bodies.momenta[slot] = {};
         world.bodies.change[slot] = {};
         world.movers.leaving = true;  // once this step is over

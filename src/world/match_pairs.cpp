@@ -1,4 +1,4 @@
-// Stages 2 and 3: which colliders may touch. The broad phase is told which boxes have changed and gives the pairs that
+// Stage 2: which colliders may touch. The broad phase is told which boxes have changed and gives the pairs that
 // begin and end with that; where most have, or where what is fixed has, it is given all boxes and finds all pairs.
 #include <algorithm>
 
@@ -7,11 +7,13 @@
 namespace lendulet {
 namespace {
 
-// All pairs are found anew where more than one box in so many has changed: that costs about a third as much for each box
-// as telling what a change begins and ends.
-constexpr int most_changes = 3;
+// All pairs are found anew where more than one box in so many has changed. For a box that costs a little more than half
+// of what it takes to tell which pairs its change begins and ends.
+constexpr int most_changes = 2;
 
 bool moved_by_constraints(const BodyInfo& info) { return info.type == BodyType::dynamic; }
+
+}  // namespace
 
 bool wanted(const WorldData& world, const BoxPair& p) {
     const ColliderInfo& a = world.colliders.info[p.a];
@@ -23,6 +25,8 @@ bool wanted(const WorldData& world, const BoxPair& p) {
     if (!moved_by_constraints(ba) && !moved_by_constraints(bb) && !a.is_trigger && !b.is_trigger) return false;
     return !world.joints.keeps_apart(a.body, b.body);
 }
+
+namespace {
 
 // With what does not change while a pair lasts.
 void begin_pair(WorldData& world, const BoxPair& boxes) {
@@ -118,7 +122,8 @@ void find_box_pairs(WorldData& world) {
     const int count = world.moving_boxes.count();
     world.box_pairs.clear();
     world.ended_pairs.clear();
-    if (world.fixed_changed) world.broad_phase.set_fixed(world.fixed_boxes.data(), world.fixed_boxes.count(), &world.tasks);
+    if (world.fixed_changed)
+        world.broad_phase.set_fixed(world.fixed_boxes.data(), world.fixed_boxes.count(), &world.tasks);
     world.all_pairs_sought |= world.fixed_changed || int64_t{world.changed_boxes.count()} * most_changes > count;
     world.fixed_changed = false;
     if (world.all_pairs_sought) {

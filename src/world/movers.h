@@ -1,9 +1,9 @@
 // Who takes part in a step, and what is kept of those that do not.
 //
 // A step looks at movers: dynamic bodies that are awake, and kinematic ones that move or have just been touched. All
-// others rest. Their boxes stay in the broad phase as they are, their pairs stay in the table but off its list, and their
-// contacts with what else rests are kept here with their impulses. So a step costs nothing for them, and to wake a body
-// costs what hangs on it.
+// others rest. Their boxes stay in the broad phase as they are, their pairs stay in the table but off its list, and
+// their contacts with what else rests are kept here with their impulses. So a step costs nothing for them, and to wake
+// a body costs what hangs on it.
 #pragma once
 
 #include <cstdint>
@@ -28,10 +28,10 @@ struct Movers {
 
 // What a contact record that rests, or one that the last step went through, is found by.
 struct RestingContacts {
-    Array<uint32_t> records;  // with points
-    Array<uint32_t> hits;     // pairs of triggers that overlap; their first_record is the place here
-    Array<uint32_t> place;    // by record: in `records`, or in WorldData::touching
-    int points = 0;           // that touch or overlap
+    Array<uint32_t> records;   // with points
+    Array<uint32_t> hits;      // pairs of triggers that overlap; their first_record is the place here
+    Array<uint32_t> place;     // by record: in `records`, or in WorldData::touching
+    int points = 0;            // that touch or overlap
     float penetration = 0.0f;  // the deepest, m
     bool penetration_stale = false, hits_changed = false;
     int listed_hits = 0;  // at the head of WorldData::overlaps

@@ -1,9 +1,9 @@
 // Pairs of colliders whose boxes overlap, and what is kept of each from step to step.
 //
-// A pair has a number while it lasts, and everything of it stands at that number. From each collider leads a list of its
-// pairs, so that what a body has to do with is found without looking at others. A step goes through the pairs that are
-// listed, those with a body that may move; all others rest and cost it nothing. The list is sorted by colliders, which
-// makes everything downstream independent of the broad phase's own order and of how the pairs came about.
+// A pair has a number while it lasts, and everything of it stands at that number. From each collider leads a list of
+// its pairs, so that what a body has to do with is found without looking at others. A step goes through the pairs that
+// are listed, those with a body that may move; all others rest and cost it nothing. The list is sorted by colliders,
+// which makes everything downstream independent of the broad phase's own order and of how the pairs came about.
 #pragma once
 
 #include <cstdint>
@@ -94,7 +94,8 @@ public:
     bool to_be_merged() const { return !coming_.empty(); }
     void merge();
     bool to_be_swept() const { return !ended_.empty(); }
-    // Takes those that have ended off the list, and those for which rests(pair) holds; these are then told rest(number).
+    // Takes those that have ended off the list, and those for which rests(pair) holds; these are then told
+    // rest(number).
     template <class Rests, class Rest>
     void sweep(Rests&& rests, Rest&& rest);
 
@@ -115,9 +116,9 @@ private:
 
     uint32_t record_count_ = 0;
     Array<Link> links_;
-    Array<Links> first_;     // by collider
-    Array<uint32_t> free_;   // numbers
-    Array<uint32_t> ended_;  // numbers that may still be on the list
+    Array<Links> first_;                       // by collider
+    Array<uint32_t> free_;                     // numbers
+    Array<uint32_t> ended_;                    // numbers that may still be on the list
     Array<uint32_t> free_single_, free_mesh_;  // first records of stretches given back
     Array<ListedPair> coming_, merged_;
     Array<BoxPair> scratch_;

@@ -105,9 +105,9 @@ void finish_step(WorldData& world, float dt) {
     s.joints = world.joints.count();
     s.bytes_per_body = BodyStore::bytes_per_body() + sizeof(BodyState) + sizeof(BodyInertia) + sizeof(BodyStart) +
                        sizeof(BodyMotion) + sizeof(BodyBlock) / block_bodies;
-    s.bytes_per_manifold = sizeof(ContactRecord) + sizeof(FoundSeparations) + sizeof(ColliderPair) + sizeof(ListedPair) +
-                           sizeof(PairCache) +
-                           sizeof(KeptPose) + (world.active.empty() ? 0 : row_bytes / world.active.size());
+    s.bytes_per_manifold = sizeof(ContactRecord) + sizeof(FoundSeparations) + sizeof(ColliderPair) +
+                           sizeof(ListedPair) + sizeof(PairCache) + sizeof(KeptPose) +
+                           (world.active.empty() ? 0 : row_bytes / world.active.size());
     world.time += dt;
     ++world.steps;
     world.query_scene.all_moved();

@@ -139,7 +139,8 @@ void choose_substeps(WorldData& world, float dt) {
     auto mark = [&](uint32_t slot) {
         if (loads[slot].step == world.steps + 1) loads[root(loads, slot)].tied = true;
     };
-    for (uint32_t joint : world.movers.joints) mark(world.joints.info[joint].body_a), mark(world.joints.info[joint].body_b);
+    for (uint32_t joint : world.movers.joints)
+        mark(world.joints.info[joint].body_a), mark(world.joints.info[joint].body_b);
     for (uint32_t i : world.active) {
         IslandLoad& l = loads[root(loads, static_cast<uint32_t>(world.records[i].body_b))];
         if (!l.decided) decide(l, gravity, dt, world.config.solver_steps);

@@ -106,10 +106,10 @@ struct WorldData {
     Array<uint32_t> touching;                   // records with points of listed pairs, in order
     Array<uint32_t> active;  // those of them that are solved, by class of substeps: at least one body awake
     Array<uint32_t> unsorted;
-    int awake_points = 0;                       // of listed pairs: points that touch or overlap
-    float awake_penetration = 0.0f;             // ... and the deepest overlap, m
-    Array<Overlap> overlaps;                    // those of pairs at rest first
-    Array<uint32_t> active_joints;  // slots of the joints that are solved, in creation order
+    int awake_points = 0;            // of listed pairs: points that touch or overlap
+    float awake_penetration = 0.0f;  // ... and the deepest overlap, m
+    Array<Overlap> overlaps;         // those of pairs at rest first
+    Array<uint32_t> active_joints;   // slots of the joints that are solved, in creation order
     Array<JointRecord> joint_records;
 
     // This step's awake bodies, packed for the solver.
@@ -159,6 +159,8 @@ void remove_joints_of(WorldData& world, uint32_t body);
 // The body takes part in the steps from now on; or not any more, as it is about to be removed.
 void add_mover(WorldData& world, uint32_t slot);
 void remove_mover(WorldData& world, uint32_t slot);
+// Whether two colliders whose boxes overlap are a pair.
+bool wanted(const WorldData& world, const BoxPair& p);
 // Sets a pair aside with its impulses, brings it back, ends it; the latter also between steps.
 void rest_pair(WorldData& world, uint32_t number);
 void wake_pair(WorldData& world, uint32_t number);

@@ -1,4 +1,4 @@
-// Stage 4: where colliders touch.
+// Stage 3: where colliders touch.
 //
 // Each pair owns its records, its cache and its kept pose; nothing else is written for it, and its results depend on
 // the poses and on what it owns. So pairs may be taken in any order by any worker, and gathered into batches at will.
