@@ -175,10 +175,12 @@ public:
     int joint_count() const;
     BodyId body(int index) const;  // 0 .. body_count() - 1
     JointId joint_id(int index) const;
-    // Contacts of the last step, ordered by colliders: the same for every broad phase and number of workers.
+    // Contacts of the last step, ordered by colliders, and after them those among bodies at rest as these came to rest:
+    // the same for every broad phase and number of workers. Where a body is removed the last of either kind takes the
+    // place of one that goes.
     int contact_count() const;
     Contact contact(int index) const;
-    std::span<const Overlap> overlaps() const;  // triggers, of the last step
+    std::span<const Overlap> overlaps() const;  // triggers, of the last step; those at rest first
     // Calls visit(AabbView) for every leaf and node box of the broad phase.
     template <class Visit>
     void for_each_aabb(Visit&& visit) const {

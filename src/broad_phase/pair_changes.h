@@ -16,6 +16,7 @@
 #include "base/tasks.h"
 #include "broad_phase/box.h"
 #include "broad_phase/pair_chunks.h"
+#include "broad_phase/sort.h"
 
 namespace lendulet {
 
@@ -51,6 +52,7 @@ public:
         int listed = changes.listed_below(common);
         int gone = old_count - common, fresh = changes.count - common;
         bool few = (static_cast<int64_t>(listed) + gone + fresh) * share < changes.count;
+        touched_.reserve(static_cast<size_t>(changes.count / share) + 1);  // so that later updates need not grow it
         if (few) {
             touched_.clear();
             for (int i = 0; i < listed + gone; ++i) {
@@ -109,7 +111,6 @@ private:
         sorted_keys(keys);
     }
     void sorted_keys(Array<uint64_t>& keys);  // of pairs_, without those of a box and itself
-    static void append_missing(const Array<uint64_t>& from, const Array<uint64_t>& in, Array<BoxPair>& out);
 
     Array<uint64_t> before_, after_, swap_;  // a << 32 | b
     Array<BoxPair> pairs_;

@@ -26,4 +26,13 @@ void sort_keys(Array<uint64_t>& keys, Array<uint64_t>& swap, int first_bit) {
     }
 }
 
+void append_missing(const Array<uint64_t>& from, const Array<uint64_t>& in, Array<BoxPair>& out) {
+    size_t next = 0;
+    for (uint64_t key : from) {
+        while (next < in.size() && in[next] < key) ++next;
+        if (next < in.size() && in[next] == key) continue;
+        out.push_back({static_cast<uint32_t>(key >> 32), static_cast<uint32_t>(key)});
+    }
+}
+
 }  // namespace lendulet

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/memory.h"
+#include "broad_phase/box.h"
 
 namespace lendulet {
 
@@ -27,5 +28,8 @@ inline float float_of(uint32_t ordered) {
 // rising order before, else unspecified only for keys that are equal altogether. The sorted keys are left in `keys`,
 // whose memory may have changed hands with that of `swap`.
 void sort_keys(Array<uint64_t>& keys, Array<uint64_t>& swap, int first_bit = 0);
+
+// Appends the pairs whose keys a << 32 | b stand in one sorted list and not in the other; each is in a list once.
+void append_missing(const Array<uint64_t>& from, const Array<uint64_t>& in, Array<BoxPair>& out);
 
 }  // namespace lendulet

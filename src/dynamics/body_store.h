@@ -42,14 +42,15 @@ struct BodyChange {
 struct BodyInfo {
     BodyType type = BodyType::fixed;
     bool asleep = false, allow_sleep = true, has_forces = false;
-    bool placed = true;                      // added or put somewhere by hand since the last step
     bool capped = false, contained = false;  // in the last step: speed cut; state went non-finite and was put back
     float gravity_factor = 1.0f, linear_damping = 0.0f, angular_damping = 0.0f;
-    float still_time = 0.0f;  // how long it has been slow, s
-    float radius = 0.0f;      // of a sphere about the centre of mass that holds all colliders
-    float depth = 3e38f;      // of the shallowest inner core of its colliders, m
-    bool bullet = false;      // may not pass through moving bodies either
-    bool stopped = false;     // at a time of impact, in the last step
+    float still_time = 0.0f;     // how long it has been slow, s
+    uint32_t placed_at = 0;      // number of the step before which it was added or put somewhere by hand
+    uint32_t mover_place = ~0u;  // among the bodies that a step looks at; ~0: it does not look at this one
+    float radius = 0.0f;         // of a sphere about the centre of mass that holds all colliders
+    float depth = 3e38f;         // of the shallowest inner core of its colliders, m
+    bool bullet = false;         // may not pass through moving bodies either
+    bool stopped = false;        // at a time of impact, in the last step
     uint32_t first_collider = no_slot;
     int32_t collider_count = 0;
     int32_t solver_index = 0;  // in this step's SolverBodies

@@ -3,6 +3,7 @@
 // generation are the number of the world, so that handles of another world are recognised too.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include "base/memory.h"
@@ -13,7 +14,12 @@ class Slots {
 public:
     // `world`: 1 to 255.
     Slots(const Memory* memory, uint32_t world)
-        : first_generation_(world << world_shift), generation_(memory), free_(memory), order_(memory), place_(memory) {}
+        : first_generation_(world << world_shift),
+          generation_(memory),
+          free_(memory),
+          alive_(memory),
+          order_(memory),
+          place_(memory) {}
 
     // A slot for a new object; its data arrays must then be resized to capacity().
     uint32_t add() {
@@ -22,28 +28,31 @@ public:
             slot = static_cast<uint32_t>(generation_.size());
             generation_.push_back(first_generation_);
             place_.push_back(0u);
+            alive_.push_back(0u);
         } else {
             slot = free_.back();
             free_.pop_back();
         }
+        if (holes_.load(std::memory_order_relaxed) > count_) close_holes();
         place_[slot] = static_cast<uint32_t>(order_.size());
         order_.push_back(slot);
+        alive_[slot] = 1;
+        ++count_;
         return slot;
     }
-    // Frees a slot; cost is that of moving the younger entries of the creation order down by one.
+    // Frees a slot. Leaves a hole in the order, which the next reader of it closes.
     void remove(uint32_t slot) {
-        size_t at = place_[slot];
-        for (size_t i = at + 1; i < order_.size(); ++i) {
-            order_[i - 1] = order_[i];
-            place_[order_[i - 1]] = static_cast<uint32_t>(i - 1);
-        }
-        order_.pop_back();
+        uint32_t at = place_[slot];
+        order_[at] = hole;
+        if (at < first_hole_) first_hole_ = at;
+        holes_.store(holes_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
         generation_[slot] = first_generation_ | ((generation_[slot] + 1) & count_mask);
         free_.push_back(slot);
-        place_[slot] = ~0u;
+        alive_[slot] = 0;
+        --count_;
     }
     bool alive(uint32_t slot, uint32_t generation) const {
-        return slot < generation_.size() && generation_[slot] == generation && place_[slot] != ~0u;
+        return slot < generation_.size() && generation_[slot] == generation && alive_[slot];
     }
     // Whether a handle of this (non-zero) generation is from another world.
     bool foreign(uint32_t generation) const {
@@ -51,9 +60,15 @@ public:
     }
     uint32_t generation(uint32_t slot) const { return generation_[slot]; }
     size_t capacity() const { return generation_.size(); }
-    int count() const { return order_.count(); }
-    uint32_t in_order(int index) const { return order_[static_cast<size_t>(index)]; }  // slots by creation
-    const Array<uint32_t>& order() const { return order_; }
+    int count() const { return count_; }
+    // Rises with the time of creation; valid until something is added or the order is read. For writing calls.
+    uint32_t place(uint32_t slot) const { return place_[slot]; }
+    // Slots by creation. After removals the first call moves the younger ones down; several threads may call at once.
+    const Array<uint32_t>& order() const {
+        if (holes_.load(std::memory_order_acquire) > 0) close_holes();
+        return order_;
+    }
+    uint32_t in_order(int index) const { return order()[static_cast<size_t>(index)]; }
     // How often the slot was given back: its generation without the number of the world.
     uint32_t uses(uint32_t slot) const { return generation_[slot] & count_mask; }
 
@@ -69,10 +84,34 @@ public:
     }
 
 private:
+    static constexpr uint32_t hole = ~0u;
+    void close_holes() const {
+        while (busy_.exchange(true, std::memory_order_acquire)) {}
+        if (holes_.load(std::memory_order_relaxed) > 0) {
+            size_t kept = first_hole_;
+            for (size_t i = kept; i < order_.size(); ++i) {
+                if (order_[i] == hole) continue;
+                place_[order_[i]] = static_cast<uint32_t>(kept);
+                order_[kept++] = order_[i];
+            }
+            order_.resize_unset(kept);
+            first_hole_ = hole;
+            holes_.store(0, std::memory_order_release);
+        }
+        busy_.store(false, std::memory_order_release);
+    }
+
     static constexpr int world_shift = 24;
     static constexpr uint32_t count_mask = (1u << world_shift) - 1;
     uint32_t first_generation_;
-    Array<uint32_t> generation_, free_, order_, place_;
+    int count_ = 0;
+    Array<uint32_t> generation_, free_;
+    Array<uint8_t> alive_;
+    // What the next reader of the order may have to close holes in.
+    mutable Array<uint32_t> order_, place_;  // place_: in order_, or hole
+    mutable uint32_t first_hole_ = hole;
+    mutable std::atomic<int> holes_{0};
+    mutable std::atomic<bool> busy_{false};
 };
 
 }  // namespace lendulet

@@ -32,7 +32,7 @@ struct alignas(64) ContactRecord {
     uint32_t key;            // name among the manifolds of the pair
     int32_t triangle;
     uint32_t flags;
-    uint32_t pair;  // index of the pair in this step's pair list
+    uint32_t pair;  // number of the pair
 };
 static_assert(sizeof(ContactRecord) == 192);
 

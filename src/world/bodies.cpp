@@ -159,6 +159,10 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
         last = slot;
         ++info.collider_count;
         world.query_scene.changed(slot);
+        world.frames.resize(world.colliders.slots.capacity());
+        world.at_rest.resize(world.frames.size());
+        world.box_place.resize(world.frames.size(), no_box);
+        world.box_place[slot] = no_box;
         info.radius = maximum(info.radius, length(world.colliders.local[slot].translation) + ci.radius);
     }
 }
@@ -181,6 +185,21 @@ Status check_motion(const RigidBodyDef& def, const char* call) {
     if (def.linear_damping < 0.0f || def.angular_damping < 0.0f)
         return refused(ErrorCode::bad_material, call, "damping must not be negative");
     return {};
+}
+
+// The last box takes the place of the one that goes.
+void remove_box(WorldData& world, uint32_t collider) {
+    uint32_t place = world.box_place[collider];
+    if (world.bodies.info[world.colliders.info[collider].body].type == BodyType::fixed) {
+        world.fixed_changed = true;
+    } else if (place != no_box) {
+        world.forgotten.push_back(collider);
+        world.moving_boxes[place] = world.moving_boxes.back();
+        world.box_place[world.moving_boxes[place].index] = place;
+        world.moving_boxes.pop_back();
+        world.changed_boxes.push_back(place);
+    }
+    world.box_place[collider] = no_box;
 }
 
 template <class T, class Keep>
@@ -237,6 +256,8 @@ Result<BodyId> World::add_rigid_body(const RigidBodyDef& def) {
     world.bodies.momenta[slot].L =
         def.kinematic ? def.angular_velocity : world.bodies.inertia_times(slot, def.angular_velocity);
     store_colliders(world, slot, colliders.value());
+    info.placed_at = static_cast<uint32_t>(world.steps);
+    add_mover(world, slot);
     return world.bodies.id(slot);
 }
 
@@ -253,6 +274,8 @@ Result<BodyId> World::add_static_body(const StaticBodyDef& def) {
     world.bodies.name[slot] = std::string(def.name.substr(0, max_name));
     world.bodies.set_user_pose(slot, {def.position, q.value()});
     store_colliders(world, slot, colliders.value());
+    world.bodies.info[slot].placed_at = static_cast<uint32_t>(world.steps);
+    world.bodies.info[slot].solver_index = static_body;
     world.fixed_changed = true;
     return world.bodies.id(slot);
 }
@@ -263,10 +286,15 @@ Status World::remove_body(BodyId id) {
     uint32_t slot = id.index;
     wake_touching(world, slot);  // what rested on it falls
     remove_joints_of(world, slot);
-    if (world.bodies.info[slot].type == BodyType::fixed) world.fixed_changed = true;
+    remove_mover(world, slot);
+    bool overlapped = false;
     for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot;) {
         uint32_t next = world.colliders.info[c].next;
-        world.pairs.remove_collider(c);
+        world.pairs.for_each_of(c, [&](uint32_t number) {
+            overlapped |= world.pairs.pairs[number].hit;
+            forget_pair(world, number);
+        });
+        remove_box(world, c);
         world.colliders.shape[c] = Sphere{};  // lets go of shared hulls and meshes
         world.colliders.info[c].body = no_slot;
         world.colliders.info[c].boxed = false;
@@ -274,8 +302,12 @@ Status World::remove_body(BodyId id) {
         world.colliders.slots.remove(c);
         c = next;
     }
-    keep_if(world.touching, [&](uint32_t i) { return world.pairs.now[world.records[i].pair].cache != no_cache; });
-    keep_if(world.overlaps, [&](const Overlap& o) { return o.trigger_body != id && o.other_body != id; });
+    world.bodies.info[slot].first_collider = no_slot;
+    if (overlapped) {
+        auto others = [&](const Overlap& o) { return o.trigger_body != id && o.other_body != id; };
+        keep_if(world.overlaps, others);
+        world.resting.hits_changed = true;
+    }
     world.bodies.slots.remove(slot);
     return {};
 }

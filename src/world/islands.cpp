@@ -1,5 +1,8 @@
 // Stage 4: groups of bodies that touch or are joined, and which of them rest. A group sleeps when all of it has been
 // slow for a while, and wakes as a whole.
+//
+// Groups are formed of movers alone. Where one that does not rest touches a sleeping body, that body's whole group is
+// followed through its contacts and joints and wakes, and groups are formed anew.
 #include "world/world_data.h"
 
 namespace lendulet {
@@ -7,6 +10,7 @@ namespace {
 
 constexpr float sleep_time = 0.5f;    // s that a whole island must have been slow
 constexpr float sleep_speed = 0.03f;  // m/s of the fastest material point; raises rest noise of the peers by twice
+constexpr float endless = 1e30f;      // s
 
 uint32_t root(Array<uint32_t>& parent, uint32_t i) {
     while (parent[i] != i) {
@@ -25,78 +29,151 @@ void join(Array<uint32_t>& parent, uint32_t a, uint32_t b) {
 // A static or kinematic body that does not leave in peace what rests on it.
 bool disturbs(const WorldData& world, uint32_t slot) {
     const BodyMomenta& m = world.bodies.momenta[slot];
-    return world.bodies.info[slot].placed || length_squared(m.p) + length_squared(m.L) > 0.0f;
+    return world.bodies.info[slot].placed_at == static_cast<uint32_t>(world.steps) ||
+           length_squared(m.p) + length_squared(m.L) > 0.0f;
 }
 
 float surface_speed(const BodyStore& bodies, uint32_t slot) {
     return length(bodies.velocity(slot)) + bodies.info[slot].radius * length(bodies.angular_velocity(slot));
 }
 
-void set_awake(BodyInfo& info) {
-    if (info.asleep) info.asleep = false, info.still_time = 0.0f;
+// visit(body) for the other body of every contact.
+template <class Visit>
+void for_each_touching(const WorldData& world, uint32_t slot, Visit&& visit) {
+    for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next)
+        world.pairs.for_each_of(c, [&](uint32_t number) {
+            const ColliderPair& p = world.pairs.pairs[number];
+            if (p.count > 0) visit(world.colliders.info[p.a == c ? p.b : p.a].body);
+        });
+}
+
+// True where it was asleep.
+bool wake_sleeper(WorldData& world, uint32_t slot) {
+    if (!world.bodies.info[slot].asleep) return false;
+    wake_body(world, slot);
+    return true;
+}
+
+void wake_island(WorldData& world, uint32_t slot) {
+    Array<uint32_t>& waking = world.waking;
+    auto wake = [&](uint32_t body) {
+        if (wake_sleeper(world, body)) waking.push_back(body);
+    };
+    wake(slot);
+    while (!waking.empty()) {
+        uint32_t body = waking.back();
+        waking.pop_back();
+        for_each_touching(world, body, wake);
+        world.joints.for_each_of(body, [&](uint32_t joint) {
+            wake(world.joints.info[joint].body_a);
+            wake(world.joints.info[joint].body_b);
+        });
+    }
+}
+
+void count_slow_time(WorldData& world, float dt) {
+    for (uint32_t slot : world.movers.bodies) {
+        BodyInfo& info = world.bodies.info[slot];
+        if (info.type != BodyType::dynamic) continue;
+        bool slow = info.allow_sleep && !info.has_forces && surface_speed(world.bodies, slot) < sleep_speed;
+        info.still_time = slow ? info.still_time + dt : 0.0f;
+    }
+}
+
+void link(WorldData& world, uint32_t a, uint32_t b) {
+    const BodyInfo &ia = world.bodies.info[a], &ib = world.bodies.info[b];
+    bool moving_a = ia.type == BodyType::dynamic, moving_b = ib.type == BodyType::dynamic;
+    if (moving_a && moving_b) {
+        if (!ia.asleep && !ib.asleep) join(world.island_parent, a, b);
+        else if (ia.asleep != ib.asleep) world.touched_sleepers.push_back(ia.asleep ? BodyPair{b, a} : BodyPair{a, b});
+    }
+    // A kinematic body in motion wakes what it touches, and so does whatever has just been put there.
+    else if (moving_a && ia.asleep && disturbs(world, b)) {
+        world.touched_sleepers.push_back({b, a});
+    } else if (moving_b && ib.asleep && disturbs(world, a)) {
+        world.touched_sleepers.push_back({a, b});
+    }
+}
+
+// The groups of movers, and how long each has been at rest: the shortest time in it.
+void form_islands(WorldData& world) {
+    Array<uint32_t>& parent = world.island_parent;
+    Array<float>& still = world.island_still;
+    parent.resize_unset(world.bodies.slots.capacity());
+    still.resize_unset(world.bodies.slots.capacity());
+    for (uint32_t slot : world.movers.bodies) parent[slot] = slot, still[slot] = endless;
+    world.touched_sleepers.clear();
+    for (uint32_t i : world.touching) {
+        const ColliderPair& p = world.pairs.pairs[world.records[i].pair];
+        link(world, world.colliders.info[p.a].body, world.colliders.info[p.b].body);
+    }
+    for (uint32_t joint : world.movers.joints)
+        link(world, world.joints.info[joint].body_a, world.joints.info[joint].body_b);
+    for (uint32_t slot : world.movers.bodies) {
+        const BodyInfo& info = world.bodies.info[slot];
+        if (info.type != BodyType::dynamic) continue;
+        float& shortest = still[root(parent, slot)];
+        shortest = minimum(shortest, info.still_time);
+    }
+}
+
+bool rests(WorldData& world, uint32_t slot) {
+    return world.island_still[root(world.island_parent, slot)] >= sleep_time;
+}
+
+// Wakes the groups of sleepers that are touched by what does not rest; false where there are none. Their contacts then
+// are among those of the step.
+bool wake_touched(WorldData& world) {
+    const int points = world.resting.points;
+    const float penetration = deepest_at_rest(world);
+    bool any = false;
+    for (const BodyPair& p : world.touched_sleepers) {
+        if (!world.bodies.info[p.b].asleep) continue;
+        if (world.bodies.info[p.a].type == BodyType::dynamic && rests(world, p.a)) continue;
+        wake_island(world, p.b);
+        any = true;
+    }
+    if (!any) return false;
+    settle_movers(world);
+    world.pairs.merge();
+    list_contacts(world);
+    world.awake_points += points - world.resting.points;
+    world.awake_penetration = maximum(world.awake_penetration, penetration);
+    return true;
+}
+
+void lay_to_rest(WorldData& world) {
+    for (uint32_t slot : world.movers.bodies) {
+        BodyInfo& info = world.bodies.info[slot];
+        if (info.type != BodyType::dynamic || !rests(world, slot)) continue;
+        info.asleep = true;
+        info.capped = false;
+        world.bodies.momenta[slot] = {};
+        world.bodies.change[slot] = {};
+        world.movers.leaving = true;  // once this step is over
+    }
 }
 
 }  // namespace
 
 void wake_body(WorldData& world, uint32_t slot) {
-    world.bodies.info[slot].asleep = false;
-    world.bodies.info[slot].still_time = 0.0f;
+    BodyInfo& info = world.bodies.info[slot];
+    if (info.type == BodyType::fixed) return;
+    info.asleep = false;
+    info.still_time = 0.0f;
+    add_mover(world, slot);
 }
 
 void wake_touching(WorldData& world, uint32_t slot) {
-    for (uint32_t i : world.touching) {
-        const ColliderPair& p = world.pairs.now[world.records[i].pair];
-        uint32_t a = world.colliders.info[p.a].body, b = world.colliders.info[p.b].body;
-        if (a == slot) set_awake(world.bodies.info[b]);
-        if (b == slot) set_awake(world.bodies.info[a]);
-    }
+    for_each_touching(world, slot, [&](uint32_t body) { wake_sleeper(world, body); });
 }
 
 void update_islands(WorldData& world, float dt) {
     if (!world.config.allow_sleep) return;
-    BodyStore& bodies = world.bodies;
-    Array<uint32_t>& parent = world.island_parent;
-    parent.resize_unset(bodies.slots.capacity());
-    for (uint32_t i = 0; i < parent.size(); ++i) parent[i] = i;
-    auto link = [&](uint32_t a, uint32_t b) {
-        bool moving_a = bodies.info[a].type == BodyType::dynamic, moving_b = bodies.info[b].type == BodyType::dynamic;
-        if (moving_a && moving_b) join(parent, a, b);
-        // A kinematic body in motion wakes what it touches, and so does whatever has just been put there.
-        else if (moving_a && disturbs(world, b)) set_awake(bodies.info[a]);
-        else if (moving_b && disturbs(world, a)) set_awake(bodies.info[b]);
-    };
-    for (uint32_t i : world.touching) {
-        const ColliderPair& p = world.pairs.now[world.records[i].pair];
-        link(world.colliders.info[p.a].body, world.colliders.info[p.b].body);
-    }
-    world.joints.for_each_link(link);
-
-    // The shortest rest in each island decides for all of it; sleeping bodies have rested long enough.
-    Array<float>& still = world.island_still;
-    still.assign(bodies.slots.capacity(), 1e30f);
-    for (uint32_t slot : bodies.slots.order()) {
-        BodyInfo& info = bodies.info[slot];
-        if (info.type != BodyType::dynamic) continue;
-        if (!info.asleep) {
-            bool slow = info.allow_sleep && !info.has_forces && surface_speed(bodies, slot) < sleep_speed;
-            info.still_time = slow ? info.still_time + dt : 0.0f;
-        }
-        float& s = still[root(parent, slot)];
-        s = minimum(s, info.asleep ? sleep_time : info.still_time);
-    }
-    for (uint32_t slot : bodies.slots.order()) {
-        BodyInfo& info = bodies.info[slot];
-        info.placed = false;
-        if (info.type != BodyType::dynamic) continue;
-        bool rest = still[root(parent, slot)] >= sleep_time;
-        if (rest && !info.asleep) {
-            info.asleep = true;
-            bodies.momenta[slot] = {};
-            bodies.change[slot] = {};
-        } else if (!rest) {
-            set_awake(info);
-        }
-    }
+    count_slow_time(world, dt);
+    form_islands(world);
+    while (wake_touched(world)) form_islands(world);
+    lay_to_rest(world);
 }
 
 }  // namespace lendulet

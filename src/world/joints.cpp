@@ -185,26 +185,6 @@ float substep_share(const WorldData& world, int record) {
     return 1.0f / static_cast<float>(1 << c);
 }
 
-// The impulses of a joint, solved now or not.
-JointImpulses impulses_of(const WorldData& world, uint32_t slot) {
-    if (world.joints.record[slot] < 0) return world.joints.impulses[slot];
-    const JointRecord& r = world.joint_records[static_cast<size_t>(world.joints.record[slot])];
-    JointImpulses i;
-    for (int k = 0; k < 3; ++k) {
-        i.linear[k] = r.linear[k];
-        i.angular[k] = r.angular[k];
-    }
-    i.limit[0] = r.limit_0;
-    i.limit[1] = r.limit_1;
-    i.motor = r.motor;
-    i.spring = r.spring;
-    i.flags = r.flags;
-    i.impulse = {r.impulse[0], r.impulse[1], r.impulse[2]};
-    i.angular_impulse = {r.angular_impulse[0], r.angular_impulse[1], r.angular_impulse[2]};
-    i.h = world.last_h * substep_share(world, world.joints.record[slot]);
-    return i;
-}
-
 bool awake(const WorldData& world, uint32_t body) {
     const BodyInfo& info = world.bodies.info[body];
     return info.type == BodyType::dynamic && !info.asleep;
@@ -212,11 +192,14 @@ bool awake(const WorldData& world, uint32_t body) {
 
 // Takes impulses from the records, which are to be made anew.
 void drop_records(WorldData& world) {
-    for (uint32_t slot : world.active_joints) world.joints.impulses[slot] = impulses_of(world, slot);
-    for (uint32_t slot : world.active_joints) world.joints.record[slot] = -1;
-    world.active_joints.clear();
-    world.joint_records.clear();
-    world.joints_changed = true;
+    for (uint32_t slot : world.active_joints) world.joints.impulses[slot] = joint_impulses(world, slot);
+    forget_joint_records(world);
+}
+
+// Joints may keep the colliders of their bodies apart.
+void joints_changed(WorldData& world, const JointInfo& j) {
+    world.movers.joints_changed = world.joints_changed = world.joint_groups_changed = true;
+    if (!j.collide_connected) world.rejoined.push_back({j.body_a, j.body_b});
 }
 
 void remove_joint_at(WorldData& world, uint32_t slot) {
@@ -224,7 +207,7 @@ void remove_joint_at(WorldData& world, uint32_t slot) {
     wake_body(world, j.body_a);
     wake_body(world, j.body_b);
     drop_records(world);
-    world.joint_groups_changed = true;
+    joints_changed(world, j);
     world.joints.remove(slot);
 }
 
@@ -256,7 +239,7 @@ Result<JointId> World::add_joint(const JointDef& def) {
     j.user_data = def.user_data;
     wake_body(world, j.body_a);
     wake_body(world, j.body_b);
-    world.joints_changed = world.joint_groups_changed = true;
+    joints_changed(world, j);
     return world.joints.id(world.joints.add(j, def.name.substr(0, max_name)));
 }
 
@@ -313,7 +296,7 @@ JointState World::joint(JointId id) const {
     if (!alive(id)) detail::fail(no_such(data_->joints.slots, id.generation, "joint", "joint"));
     const WorldData& world = *data_;
     const JointInfo& j = world.joints.info[id.index];
-    const JointImpulses report = impulses_of(world, id.index);
+    const JointImpulses report = joint_impulses(world, id.index);
     JointPose pose = joint_pose(world, j);
     Quat q = relative_rotation(pose);
     Vec3 axis = rotate(pose.a.orientation, Vec3{1.0f, 0.0f, 0.0f});
@@ -345,6 +328,32 @@ JointState World::joint(JointId id) const {
     return s;
 }
 
+JointImpulses joint_impulses(const WorldData& world, uint32_t slot) {
+    if (world.joints.record[slot] < 0) return world.joints.impulses[slot];
+    const JointRecord& r = world.joint_records[static_cast<size_t>(world.joints.record[slot])];
+    JointImpulses i;
+    for (int k = 0; k < 3; ++k) {
+        i.linear[k] = r.linear[k];
+        i.angular[k] = r.angular[k];
+    }
+    i.limit[0] = r.limit_0;
+    i.limit[1] = r.limit_1;
+    i.motor = r.motor;
+    i.spring = r.spring;
+    i.flags = r.flags;
+    i.impulse = {r.impulse[0], r.impulse[1], r.impulse[2]};
+    i.angular_impulse = {r.angular_impulse[0], r.angular_impulse[1], r.angular_impulse[2]};
+    i.h = world.last_h * substep_share(world, world.joints.record[slot]);
+    return i;
+}
+
+void forget_joint_records(WorldData& world) {
+    for (uint32_t slot : world.active_joints) world.joints.record[slot] = -1;
+    world.active_joints.clear();
+    world.joint_records.clear();
+    world.joints_changed = true;
+}
+
 void remove_joints_of(WorldData& world, uint32_t body) {
     for (uint32_t slot = world.joints.first_of(body); slot != no_joint_link; slot = world.joints.first_of(body))
         remove_joint_at(world, slot);
@@ -353,7 +362,7 @@ void remove_joints_of(WorldData& world, uint32_t body) {
 uint64_t hash_joints(const WorldData& world, uint64_t start) {
     uint64_t h = hash_combine(start, world.joints.slots.order().size());
     for (uint32_t slot : world.joints.slots.order()) {
-        const JointImpulses i = impulses_of(world, slot);
+        const JointImpulses i = joint_impulses(world, slot);
         h = hash_floats(h, i.linear, 3);
         h = hash_floats(h, i.angular, 3);
         h = hash_floats(h, i.limit, 2);
@@ -384,7 +393,7 @@ void list_joints(WorldData& world) {
         return awake(world, moved) ? part_of(world, world.bodies.info[moved].solver_index) : -1;
     };
     int counts[substep_classes] = {};
-    for (uint32_t slot : joints.slots.order())
+    for (uint32_t slot : world.movers.joints)
         if (int c = class_of_joint(joints.info[slot]); c >= 0) ++counts[c];
     int first = 0;
     for (int c = 0; c < substep_classes; ++c) {
@@ -395,7 +404,7 @@ void list_joints(WorldData& world) {
     }
     world.active_joints.resize_unset(static_cast<size_t>(first));
     world.joint_records.resize_unset(static_cast<size_t>(first));
-    for (uint32_t slot : joints.slots.order()) {
+    for (uint32_t slot : world.movers.joints) {
         int c = class_of_joint(joints.info[slot]);
         if (c < 0) continue;
         joints.record[slot] = world.parts[c].first_joint + counts[c]++;

@@ -58,13 +58,14 @@ bool cap_speed(BodyStore& bodies, uint32_t slot) {
 
 void limit_motion(WorldData& world) {
     BodyStore& bodies = world.bodies;
-    for (uint32_t slot : bodies.slots.order()) {
+    for (uint32_t slot : world.movers.bodies) {
         BodyInfo& info = bodies.info[slot];
-        info.capped = info.type == BodyType::dynamic && !info.asleep && cap_speed(bodies, slot);
+        info.capped = info.type == BodyType::dynamic && cap_speed(bodies, slot);
         if (info.type != BodyType::kinematic) continue;
         BodyMomenta& m = bodies.momenta[slot];  // a kinematic body's velocities
         m.p = limited(m.p, max_speed);
         m.L = limited(m.L, max_angular_speed);
+        world.movers.leaving |= !(length_squared(m.p) + length_squared(m.L) > 0.0f);  // after this step
     }
 }
 

@@ -151,7 +151,7 @@ void pack_bodies(WorldData& world, float dt) {
     BodyStore& bodies = world.bodies;
     // Places within the class first, then behind the classes before: each begins a block of its own.
     int counts[substep_classes] = {};
-    for (uint32_t slot : bodies.slots.order()) {
+    for (uint32_t slot : world.movers.bodies) {
         BodyInfo& info = bodies.info[slot];
         const BodyMomenta& m = bodies.momenta[slot];
         bool packed = info.type == BodyType::dynamic
@@ -171,7 +171,7 @@ void pack_bodies(WorldData& world, float dt) {
     }
     world.solver_bodies.reset(place - reserved_bodies);
     world.awake.resize_unset(static_cast<size_t>(awake));
-    for (uint32_t slot : bodies.slots.order()) {
+    for (uint32_t slot : world.movers.bodies) {
         int32_t& index = bodies.info[slot].solver_index;
         if (index >= 0) continue;
         int c = -1 - index;

@@ -6,8 +6,10 @@
 namespace lendulet {
 namespace {
 
-bool precedes(const BoxPair& a, const BoxPair& b) { return a.a != b.a ? a.a < b.a : a.b < b.b; }
-uint64_t key(const ColliderPair& p) { return uint64_t{p.a} << 32 | p.b; }
+template <class Pair>
+bool precedes(const Pair& a, const Pair& b) {
+    return a.a != b.a ? a.a < b.a : a.b < b.b;
+}
 
 constexpr int digit_bits = 11;
 constexpr uint32_t radix = 1u << digit_bits;
@@ -17,7 +19,7 @@ constexpr uint32_t radix = 1u << digit_bits;
 // Least significant digit first: by b, then by a. Comparison sort below the size where counting pays.
 void PairTable::sort(Array<BoxPair>& boxes) {
     if (boxes.size() < 512) {
-        std::sort(boxes.begin(), boxes.end(), precedes);  // order: total
+        std::sort(boxes.begin(), boxes.end(), precedes<BoxPair>);  // order: total
         return;
     }
     uint32_t top = 0;
@@ -40,60 +42,59 @@ void PairTable::sort(Array<BoxPair>& boxes) {
     }
 }
 
-uint32_t PairTable::take_cache() {
-    if (free_caches.empty()) {
-        free_caches.push_back(static_cast<uint32_t>(caches.size()));
-        caches.push_back(PairCache{});
-        poses.push_back(KeptPose{});
-        free_caches.reserve(caches.capacity());  // room for all, so that giving back takes no memory
-    }
-    uint32_t cache = free_caches.back();
-    free_caches.pop_back();
-    caches[cache] = PairCache{};
-    poses[cache] = KeptPose{};
-    poses[cache].clearance = unkept;
-    return cache;
+// ---------------------------------------------------------------------------------------------------------------------
+// Pairs that begin and end
+
+void PairTable::hang(uint32_t collider, uint32_t link) {
+    Links& all = first_[collider];
+    links_[link] = {all.link, no_pair};
+    if (all.link != no_pair) links_[all.link].previous = link;
+    all.link = link;
+    ++all.count;
 }
 
-void PairTable::update(Array<BoxPair>& boxes) {
-    sort(boxes);
-    now.swap(before);
-    now.resize_unset(boxes.size());
-    // Two passes over the sorted lists: ended pairs first, so that new pairs can take over their places.
-    size_t j = 0;
-    for (ColliderPair& old : before) {
-        while (j < boxes.size() && (uint64_t{boxes[j].a} << 32 | boxes[j].b) < key(old)) ++j;
-        bool goes_on = j < boxes.size() && boxes[j].a == old.a && boxes[j].b == old.b && old.cache != no_cache;
-        if (goes_on) continue;
-        if (old.cache != no_cache) free_caches.push_back(old.cache), old.cache = no_cache;
-        if (old.capacity == 1) free_single_.push_back(old.first_record);
-        if (old.capacity > 1) free_mesh_.push_back(old.first_record);
+void PairTable::unhang(uint32_t collider, uint32_t link) {
+    const Link l = links_[link];
+    if (l.next != no_pair) links_[l.next].previous = l.previous;
+    if (l.previous != no_pair) links_[l.previous].next = l.next;
+    else first_[collider].link = l.next;
+    --first_[collider].count;
+}
+
+uint32_t PairTable::begin(uint32_t a, uint32_t b, size_t colliders) {
+    if (free_.empty()) {
+        free_.push_back(static_cast<uint32_t>(pairs.size()));
+        pairs.push_back({});
+        caches.push_back(PairCache{});
+        poses.push_back(KeptPose{});
+        links_.resize_unset(2 * pairs.size());
+        // Room for all, so that giving back takes no memory.
+        for (Array<uint32_t>* numbers : {&free_, &ended_}) numbers->reserve(pairs.capacity());
+        for (Array<ListedPair>* list : {&listed, &coming_, &merged_}) list->reserve(pairs.capacity());
     }
-    j = 0;
-    begun.clear();
-    begun.reserve(now.capacity());
-    for (size_t i = 0; i < boxes.size(); ++i) {
-        ColliderPair p{};
-        p.a = boxes[i].a, p.b = boxes[i].b;
-        p.begun = true;
-        while (j < before.size() && key(before[j]) < key(p)) ++j;
-        if (j < before.size() && key(before[j]) == key(p) && before[j].cache != no_cache) {
-            p = before[j];
-        } else {
-            p.cache = take_cache();
-            begun.push_back(static_cast<uint32_t>(i));
-        }
-        now[i] = p;
-    }
+    uint32_t number = free_.back();
+    free_.pop_back();
+    ColliderPair p{};
+    p.a = a, p.b = b;
+    p.begun = true;
+    pairs[number] = p;
+    caches[number] = PairCache{};
+    poses[number] = KeptPose{};
+    poses[number].clearance = unkept;
+    first_.resize(colliders);
+    hang(a, 2 * number);
+    hang(b, 2 * number + 1);
+    list(number);
+    return number;
 }
 
 void PairTable::place_records(ColliderPair& pair, bool mesh) {
     pair.capacity = mesh ? max_mesh_manifolds : 1;
     Array<uint32_t>& free = mesh ? free_mesh_ : free_single_;
     if (free.empty()) {
-        pair.first_record = record_count;
-        record_count += pair.capacity;
-        free.reserve(caches.capacity());
+        pair.first_record = record_count_;
+        record_count_ += pair.capacity;
+        free.reserve(pairs.capacity());
     } else {
         pair.first_record = free.back();
         free.pop_back();
@@ -101,22 +102,55 @@ void PairTable::place_records(ColliderPair& pair, bool mesh) {
 }
 
 void PairTable::clear() {
-    now.clear(), before.clear(), begun.clear();
-    caches.clear(), poses.clear(), free_caches.clear();
+    pairs.clear(), caches.clear(), poses.clear(), listed.clear();
+    links_.clear(), first_.clear(), coming_.clear();
+    free_.clear(), ended_.clear();
     free_single_.clear(), free_mesh_.clear();
-    record_count = 0;
+    record_count_ = 0;
 }
 
-ColliderPair& PairTable::add(uint32_t a, uint32_t b) {
-    ColliderPair p{};
-    p.a = a, p.b = b;
-    p.cache = take_cache();
-    return now.push_back(p);
+void PairTable::end(uint32_t number) {
+    ColliderPair& p = pairs[number];
+    unhang(p.a, 2 * number);
+    unhang(p.b, 2 * number + 1);
+    if (p.capacity == 1) free_single_.push_back(p.first_record);
+    if (p.capacity > 1) free_mesh_.push_back(p.first_record);
+    (p.listed ? ended_ : free_).push_back(number);
+    p.a = no_pair;
+    p.count = 0;
+    p.hit = false;
 }
 
-void PairTable::remove_collider(uint32_t slot) {
-    for (ColliderPair& p : now)
-        if ((p.a == slot || p.b == slot) && p.cache != no_cache) free_caches.push_back(p.cache), p.cache = no_cache;
+uint32_t PairTable::find(uint32_t a, uint32_t b) const {
+    if (a >= first_.size() || b >= first_.size()) return no_pair;
+    bool through_a = first_[a].count < first_[b].count;
+    for (uint32_t link = first_[through_a ? a : b].link; link != no_pair; link = links_[link].next) {
+        const ColliderPair& p = pairs[link / 2];
+        if (p.a == a && p.b == b) return link / 2;
+    }
+    return no_pair;
+}
+
+void PairTable::give_back_ended() {
+    free_.append(ended_.data(), ended_.size());
+    ended_.clear();
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The list
+
+void PairTable::list(uint32_t number) {
+    ColliderPair& p = pairs[number];
+    p.listed = true;
+    coming_.push_back({p.a, p.b, number});
+}
+
+void PairTable::merge() {
+    std::sort(coming_.begin(), coming_.end(), precedes<ListedPair>);  // order: total
+    merged_.resize_unset(listed.size() + coming_.size());
+    std::merge(listed.begin(), listed.end(), coming_.begin(), coming_.end(), merged_.begin(), precedes<ListedPair>);
+    listed.swap(merged_);
+    coming_.clear();
 }
 
 }  // namespace lendulet

@@ -1,4 +1,9 @@
-// Pairs of colliders whose boxes overlap, sorted, with what is kept for each from step to step.
+// Pairs of colliders whose boxes overlap, and what is kept of each from step to step.
+//
+// A pair has a number while it lasts, and everything of it stands at that number. From each collider leads a list of
+// its pairs, so that what a body has to do with is found without looking at others. A step goes through the pairs that
+// are listed, those with a body that may move; all others rest and cost it nothing. The list is sorted by colliders,
+// which makes everything downstream independent of the broad phase's own order and of how the pairs came about.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +15,19 @@
 
 namespace lendulet {
 
-inline constexpr uint32_t no_cache = ~0u;
+inline constexpr uint32_t no_pair = ~0u;
 
 // Which way a pair is collided.
 enum class PairKind : uint8_t {
-    unsorted,  // not yet looked at
-    boxes,     // two sharp boxes: in batches
-    round,     // a closed form, as cheap as finding out whether the bodies have moved
+    boxes,  // two sharp boxes: in batches
+    round,  // a closed form, as cheap as finding out whether the bodies have moved
     general,
     trigger,  // whether they overlap is all that is asked
 };
 
 struct ColliderPair {
-    uint32_t a, b;            // collider slots, a < b
-    uint32_t cache;           // index into PairTable::caches; no_cache: a collider was removed since the step
-    uint32_t first_record;    // of this pair's own stretch of records, which stays the same while the pair lasts
+    uint32_t a, b;            // collider slots, a < b; a is no_pair once the pair has ended
+    uint32_t first_record;    // of this pair's own stretch of records; of a trigger: see RestingContacts::hits
     uint8_t capacity, count;  // manifolds: room, and those found
     uint8_t prepared;         // records whose lasting parts are filled in
     PairKind kind;
@@ -32,46 +35,113 @@ struct ColliderPair {
     bool fixed_a;  // that of A is not
     bool hit;      // of a trigger: overlaps
     bool begun;    // not yet collided
+    bool listed;   // a step looks at it
+    float rest_h;  // of a pair that rests: the substep that its impulses belong to, s
 };
 
-// The sorted list makes everything downstream independent of the broad phase's own order.
-struct PairTable {
-    Array<ColliderPair> now, before;
-    Array<uint32_t> begun;  // of `now`: pairs that were not there before; without records until place_records()
-    Array<PairCache> caches;
-    Array<KeptPose> poses;  // by cache
-    Array<uint32_t> free_caches;
-    uint32_t record_count = 0;  // all stretches of records, those given back included
+struct ListedPair {
+    uint32_t a, b, pair;
+};
 
+class PairTable {
+public:
     explicit PairTable(const Memory* memory)
-        : now(memory),
-          before(memory),
-          begun(memory),
+        : pairs(memory),
           caches(memory),
           poses(memory),
-          free_caches(memory),
+          listed(memory),
+          links_(memory),
+          first_(memory),
+          free_(memory),
+          ended_(memory),
           free_single_(memory),
           free_mesh_(memory),
+          coming_(memory),
+          merged_(memory),
           scratch_(memory),
           counts_(memory) {}
 
-    // Replaces `now` by `boxes` (which it sorts) and carries what is kept of pairs that go on over from the list
-    // before, which moves to `before`.
-    void update(Array<BoxPair>& boxes);
+    Array<ColliderPair> pairs;  // by number, as the two that follow
+    Array<PairCache> caches;
+    Array<KeptPose> poses;
+    Array<ListedPair> listed;  // sorted by (a, b); brought up to date by merge() and sweep()
+
+    int count() const { return pairs.count() - free_.count() - ended_.count(); }
+    // All stretches of records, those given back included.
+    uint32_t record_count() const { return record_count_; }
+
+    // A new pair of colliders a < b, which is listed; its number. Colliders from `colliders` on are unknown.
+    uint32_t begin(uint32_t a, uint32_t b, size_t colliders);
     // Gives a pair its stretch of records, for one manifold or for those of a mesh.
     void place_records(ColliderPair& pair, bool mesh);
-    // Marks pairs with a collider that is removed, so that the next owner of its slot does not inherit them.
-    void remove_collider(uint32_t slot);
-    // Forgets all pairs; then a snapshot's are added again, in their order, each with a cache of its own.
+    // The number may be taken by another pair after the next sweep().
+    void end(uint32_t number);
+    // Forgets all pairs, for a snapshot's.
     void clear();
-    ColliderPair& add(uint32_t a, uint32_t b);
+    // no_pair where there is none. Cost: the pairs of the collider that has fewer.
+    uint32_t find(uint32_t a, uint32_t b) const;
+    // visit(number) for all pairs of a collider; it may end that pair.
+    template <class Visit>
+    void for_each_of(uint32_t collider, Visit&& visit) const {
+        if (collider >= first_.size()) return;
+        for (uint32_t link = first_[collider].link; link != no_pair;) {
+            uint32_t number = link / 2;
+            link = links_[link].next;
+            visit(number);
+        }
+    }
+
+    // The list. A pair that rested comes on it with the next merge().
+    void list(uint32_t number);
+    bool to_be_merged() const { return !coming_.empty(); }
+    void merge();
+    bool to_be_swept() const { return !ended_.empty(); }
+    // Takes those that have ended off the list, and those for which rests(pair) holds; these are then told
+    // rest(number).
+    template <class Rests, class Rest>
+    void sweep(Rests&& rests, Rest&& rest);
+
+    // Sorts by (a, b).
+    void sort(Array<BoxPair>& boxes);
 
 private:
-    void sort(Array<BoxPair>& boxes);
-    uint32_t take_cache();
+    // A pair hangs on both of its colliders by a link each: 2 * number for a, 2 * number + 1 for b.
+    struct Link {
+        uint32_t next, previous;
+    };
+    struct Links {
+        uint32_t link = no_pair, count = 0;
+    };
+    void hang(uint32_t collider, uint32_t link);
+    void unhang(uint32_t collider, uint32_t link);
+    void give_back_ended();
+
+    uint32_t record_count_ = 0;
+    Array<Link> links_;
+    Array<Links> first_;                       // by collider
+    Array<uint32_t> free_;                     // numbers
+    Array<uint32_t> ended_;                    // numbers that may still be on the list
     Array<uint32_t> free_single_, free_mesh_;  // first records of stretches given back
+    Array<ListedPair> coming_, merged_;
     Array<BoxPair> scratch_;
     Array<uint32_t> counts_;
 };
+
+template <class Rests, class Rest>
+void PairTable::sweep(Rests&& rests, Rest&& rest) {
+    size_t kept = 0;
+    for (const ListedPair& entry : listed) {
+        ColliderPair& pair = pairs[entry.pair];
+        if (pair.a == no_pair) continue;
+        if (rests(pair)) {
+            pair.listed = false;
+            rest(entry.pair);
+        } else {
+            listed[kept++] = entry;
+        }
+    }
+    listed.resize_unset(kept);
+    give_back_ended();
+}
 
 }  // namespace lendulet

@@ -99,7 +99,7 @@ Status RigidBodyRef::set_pose(Position position, Quat orientation) {
     wake_touching(*world_, slot_);  // what it leaves behind
     world_->bodies.set_user_pose(slot_, {position, q.value()});
     world_->bodies.change[slot_] = {};
-    world_->bodies.info[slot_].placed = true;
+    world_->bodies.info[slot_].placed_at = static_cast<uint32_t>(world_->steps);
     for (uint32_t c = world_->bodies.info[slot_].first_collider; c != no_slot; c = world_->colliders.info[c].next)
         world_->query_scene.changed(c);
     return {};

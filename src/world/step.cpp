@@ -51,6 +51,7 @@ void step(WorldData& world, float dt, bool last) {
     StageClock clock(world.statistics);
     const SolverSettings settings{dt, world.config.solver_steps, length(world.config.gravity)};
 
+    settle_movers(world);
     limit_motion(world);
     update_bounds(world, dt);
     clock.lap(Stage::bounds);
@@ -92,8 +93,10 @@ void finish_step(WorldData& world, float dt) {
     StepStatistics& s = world.statistics;
     s.bodies = world.bodies.slots.count();
     s.awake_bodies = world.awake.count();
-    s.pairs = world.pairs.now.count();
-    s.manifolds = world.touching.count();
+    s.pairs = world.pairs.count();
+    s.manifolds = world.touching.count() + world.resting.records.count();
+    s.contact_points = world.awake_points + world.resting.points;
+    s.max_penetration = maximum(world.awake_penetration, deepest_at_rest(world));
     s.colours = s.overflow_manifolds = 0;
     size_t row_bytes = 0;
     for (const Solver& solver : world.solvers) {
@@ -104,9 +107,9 @@ void finish_step(WorldData& world, float dt) {
     s.joints = world.joints.count();
     s.bytes_per_body = BodyStore::bytes_per_body() + sizeof(BodyState) + sizeof(BodyInertia) + sizeof(BodyStart) +
                        sizeof(BodyMotion) + sizeof(BodyBlock) / block_bodies;
-    s.bytes_per_manifold = sizeof(ContactRecord) + sizeof(FoundSeparations) + sizeof(ColliderPair) + sizeof(PairCache) +
-                           sizeof(KeptPose) + (world.active.empty() ? 0 : row_bytes / world.active.size());
-    world.last_h = dt / static_cast<float>(world.config.solver_steps);
+    s.bytes_per_manifold = sizeof(ContactRecord) + sizeof(FoundSeparations) + sizeof(ColliderPair) +
+                           sizeof(ListedPair) + sizeof(PairCache) + sizeof(KeptPose) +
+                           (world.active.empty() ? 0 : row_bytes / world.active.size());
     world.time += dt;
     ++world.steps;
     world.query_scene.all_moved();

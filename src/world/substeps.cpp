@@ -130,7 +130,10 @@ void tie_other_joints(WorldData& world) {
         loads[root(loads, slot)].tied |= !loads[slot].in_group ||
                   (world.bodies.info[other].type == BodyType::kinematic && moves(world, other));
     };
-    world.joints.for_each_link([&](uint32_t a, uint32_t b) { mark(a, b), mark(b, a); });
+    for (uint32_t joint : world.movers.joints) {
+        const JointInfo& j = world.joints.info[joint];
+        mark(j.body_a, j.body_b), mark(j.body_b, j.body_a);
+    }
 }
 
 }  // namespace
@@ -145,7 +148,7 @@ void choose_substeps(WorldData& world, float dt) {
     world.active.clear();
     for (uint32_t i : world.touching) {
         ContactRecord& r = world.records[i];
-        const ColliderPair& p = world.pairs.now[r.pair];
+        const ColliderPair& p = world.pairs.pairs[r.pair];
         bool flipped = (r.flags & contact_flipped) != 0;
         uint32_t a = world.colliders.info[flipped ? p.b : p.a].body, b = world.colliders.info[flipped ? p.a : p.b].body;
         const BodyInfo &info_a = bodies.info[a], &info_b = bodies.info[b];

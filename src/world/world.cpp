@@ -63,12 +63,20 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       broad_phase(settings.broad_phase, &memory),
       moving_boxes(&memory),
       fixed_boxes(&memory),
+      box_place(&memory),
+      changed_boxes(&memory),
+      renewed(&memory),
+      forgotten(&memory),
       box_pairs(&memory),
+      ended_pairs(&memory),
       pairs(&memory),
+      rejoined(&memory),
+      movers(&memory),
+      resting(&memory),
+      at_rest(&memory),
       continuous(&memory, tasks.workers()),
       query_scene(&memory),
       frames(&memory),
-      still(&memory),
       narrow_kernels(lendulet::narrow_kernels(settings.width)),
       narrow_scratch(&memory),
       records(&memory),
@@ -91,7 +99,9 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       solvers{
           {&memory, settings.width}, {&memory, settings.width}, {&memory, settings.width}, {&memory, settings.width}},
       island_parent(&memory),
-      island_still(&memory) {}
+      island_still(&memory),
+      touched_sleepers(&memory),
+      waking(&memory) {}
 
 Result<World> WorldBuilder::build() const {
     if (Status s = check_config(config_); !s) return s.error();
@@ -121,11 +131,7 @@ StaticBodyRef World::get_static(BodyId id) const {
 Status World::set_gravity(Vec3 gravity) {
     if (Status s = check_gravity(gravity, "set_gravity"); !s) return s;
     data_->config.gravity = gravity;
-    for (uint32_t slot : data_->bodies.slots.order()) {
-        BodyInfo& info = data_->bodies.info[slot];
-        info.asleep = false;
-        info.still_time = 0.0f;
-    }
+    for (uint32_t slot : data_->bodies.slots.order()) wake_body(*data_, slot);
     return {};
 }
 const WorldConfig& World::config() const { return data_->config; }
@@ -138,7 +144,7 @@ BodyId World::body(int index) const {
     if (index < 0 || index >= body_count()) return {};
     return data_->bodies.id(data_->bodies.slots.in_order(index));
 }
-int World::contact_count() const { return data_->touching.count(); }
+int World::contact_count() const { return data_->touching.count() + data_->resting.records.count(); }
 BodyId World::body_of(ColliderId id) const {
     return data_->colliders.alive(id) ? data_->bodies.id(data_->colliders.info[id.index].body) : BodyId{};
 }
@@ -148,8 +154,9 @@ std::span<const std::string> World::warnings() const { return data_->warnings; }
 Contact World::contact(int index) const {
     const WorldData& world = *data_;
     if (index < 0 || index >= contact_count()) return Contact{};
-    const ContactRecord& r = world.records[world.touching[static_cast<size_t>(index)]];
-    const ColliderPair& p = world.pairs.now[r.pair];
+    const auto i = static_cast<size_t>(index), awake = world.touching.size();
+    const ContactRecord& r = world.records[i < awake ? world.touching[i] : world.resting.records[i - awake]];
+    const ColliderPair& p = world.pairs.pairs[r.pair];
     bool flipped = (r.flags & contact_flipped) != 0;
     uint32_t a = flipped ? p.b : p.a, b = flipped ? p.a : p.b;
     uint32_t body_a = world.colliders.info[a].body, body_b = world.colliders.info[b].body;
@@ -232,13 +239,18 @@ uint64_t World::hash() const {
                             m.L.z};
         h = hash_floats(h, values, 13);
     }
-    for (uint32_t i : world.touching) {
-        const ContactRecord& r = world.records[i];
-        h = hash_floats(h, r.normal_impulse, r.point_count);
-        h = hash_floats(h, r.friction_impulse, 3);
-        h = hash_floats(h, &r.twist_impulse, 1);
-    }
-    return hash_joints(world, h);
+    // Contacts in no order: which of them rest, and since when, is not part of the state.
+    uint64_t contacts = 0;
+    for (const Array<uint32_t>* list : {&world.touching, &world.resting.records})
+        for (uint32_t i : *list) {
+            const ContactRecord& r = world.records[i];
+            const ColliderPair& p = world.pairs.pairs[r.pair];
+            uint64_t c = hash_combine(uint64_t{p.a} << 32 | p.b, r.key);
+            c = hash_floats(c, r.normal_impulse, r.point_count);
+            c = hash_floats(c, r.friction_impulse, 3);
+            contacts += hash_floats(c, &r.twist_impulse, 1);
+        }
+    return hash_joints(world, hash_combine(h, contacts));
 }
 
 }  // namespace lendulet

@@ -17,6 +17,7 @@
 #include "solver/joints/joint.h"
 #include "solver/solver.h"
 #include "world/continuous.h"
+#include "world/movers.h"
 #include "world/narrow/kernels.h"
 #include "world/pairs.h"
 #include "world/queries/scene.h"
@@ -65,6 +66,11 @@ struct JointGroupLoad {
     uint8_t least;
 };
 
+// Two slots of bodies.
+struct BodyPair {
+    uint32_t a, b;
+};
+
 // Stretches of the packed bodies, the active contacts and the active joints that are solved together.
 struct SolverPart {
     BodyRange bodies;
@@ -83,28 +89,42 @@ struct WorldData {
     ColliderStore colliders;
     JointStore joints;
 
-    // Bounds of colliders, by who moves, with the collider's slot as index.
+    // Bounds of colliders, by whether their bodies are static, with the collider's slot as index. Boxes of bodies that
+    // rest stay as they are.
     BroadPhase broad_phase;
     Array<BroadBox> moving_boxes, fixed_boxes;
-    bool fixed_changed = true;  // static colliders came, went or moved
-    Array<BoxPair> box_pairs;
+    Array<uint32_t> box_place;      // by collider: its place there; no_box: none yet
+    Array<uint32_t> changed_boxes;  // places among the moving boxes that are not as the broad phase knows them
+    Array<uint8_t> renewed;         // by place among the colliders of movers
+    Array<uint32_t> forgotten;      // colliders whose moving box is gone since the broad phase was last told
+    int known_boxes = 0;            // moving boxes that it has
+    bool fixed_changed = true;      // static colliders came, went or moved
+    bool all_pairs_sought = true;   // it has to find all pairs, not only those that begin and end
+    Array<BoxPair> box_pairs;       // all pairs, or those that begin
+    Array<BoxPair> ended_pairs;
     PairTable pairs;
+    Array<BodyPair> rejoined;  // bodies between which a joint came or went
+    Movers movers;
+    RestingContacts resting;
+    Array<uint8_t> at_rest;      // by collider: its body is no mover
+    bool pairs_to_rest = false;  // some listed pairs may have no mover left
+
     ContinuousData continuous;
     QueryScene query_scene;  // what queries search, brought up to date by the first of them after a change
 
-    // What the narrow phase reads of colliders, by slot, and whether they are where they were in the step before.
-    Array<ShapeFrame> frames;
-    Array<uint8_t> still;
+    Array<ShapeFrame> frames;  // what the narrow phase reads of colliders, by slot
     const NarrowKernels& narrow_kernels;
     Array<NarrowScratch> narrow_scratch;  // one a worker
 
     // Manifolds, kept in place from step to step: each pair has its own stretch.
     Array<ContactRecord> records;
     Array<FoundSeparations> found_separations;  // by record
-    Array<uint32_t> touching;                   // records with points, in order
+    Array<uint32_t> touching;                   // records with points of listed pairs, in order
     Array<uint32_t> active;  // those of them that are solved, by class of substeps: at least one body awake
     Array<uint32_t> unsorted;
-    Array<Overlap> overlaps;
+    int awake_points = 0;                       // of listed pairs: points that touch or overlap
+    float awake_penetration = 0.0f;             // ... and the deepest overlap, m
+    Array<Overlap> overlaps;                    // those of pairs at rest first
     // Joints that are solved, kept while they and the awake bodies stay the same.
     Array<uint32_t> active_joints;  // slots, by class of substeps and then in creation order
     Array<JointRecord> joint_records;
@@ -127,8 +147,10 @@ struct WorldData {
     Solver solvers[substep_classes];
     Array<uint32_t> island_parent;  // union-find over body slots
     Array<float> island_still;
+    Array<BodyPair> touched_sleepers;  // (who touches, sleeping body)
+    Array<uint32_t> waking;
 
-    float last_h = 0.0f;  // substep that the stored impulses belong to
+    float last_h = 0.0f;  // substep that the impulses of listed pairs belong to
     bool in_step = false;
     double time = 0.0;
     uint64_t steps = 0;
@@ -137,12 +159,11 @@ struct WorldData {
 };
 
 // The stages of a step, in order; each reads what those before it left.
+void settle_movers(WorldData& world);
 void limit_motion(WorldData& world);
 void update_bounds(WorldData& world, float dt);
 void find_box_pairs(WorldData& world);
 void match_pairs(WorldData& world);
-void begin_pair(WorldData& world, ColliderPair& pair);  // what does not change while a pair lasts
-void list_contacts(WorldData& world);                   // what later stages go through, in the order of pairs
 void find_contacts(WorldData& world, float dt);
 void update_islands(WorldData& world, float dt);
 void find_joint_groups(WorldData& world);
@@ -162,10 +183,33 @@ int substep_class(WorldData& world, uint32_t slot);
 
 // Mixes all warm-start impulses of joints into a hash, in creation order.
 uint64_t hash_joints(const WorldData& world, uint64_t start);
+// What a joint was last given, solved now or not.
+JointImpulses joint_impulses(const WorldData& world, uint32_t slot);
+// Without taking impulses from the records of joints.
+void forget_joint_records(WorldData& world);
 // Removes the joints of a body that is about to be removed.
 void remove_joints_of(WorldData& world, uint32_t body);
 
-// Wakes a body and everything that rests on it.
+// The body takes part in the steps from now on; or not any more, as it is about to be removed.
+void add_mover(WorldData& world, uint32_t slot);
+void remove_mover(WorldData& world, uint32_t slot);
+// Whether two colliders whose boxes overlap are a pair.
+bool wanted(const WorldData& world, const BoxPair& p);
+// A new pair of two colliders, with what does not change while it lasts; its number.
+uint32_t begin_pair(WorldData& world, const BoxPair& colliders);
+// Sets a pair aside with its impulses, brings it back, ends it; the latter also between steps.
+void rest_pair(WorldData& world, uint32_t number);
+void wake_pair(WorldData& world, uint32_t number);
+void end_pair(WorldData& world, uint32_t number);
+void forget_pair(WorldData& world, uint32_t number);
+// Takes pairs that have ended or come to rest off the list.
+void rest_pairs(WorldData& world);
+// The deepest overlap among pairs at rest, m.
+float deepest_at_rest(WorldData& world);
+// Contacts and overlaps of the listed pairs, in their order, for later stages and callers.
+void list_contacts(WorldData& world);
+
+// Wakes a body; those of its island wake with it in the next step.
 void wake_body(WorldData& world, uint32_t slot);
 // Wakes what touched a body in the last step: it goes away.
 void wake_touching(WorldData& world, uint32_t slot);

@@ -13,16 +13,6 @@ namespace {
 
 uint64_t key_of(const BoxPair& pair) { return uint64_t{pair.a} << 32 | pair.b; }
 
-// Appends what stands in one sorted list and not in the other; each key is in a list once.
-void append_missing(const Array<uint64_t>& from, const Array<uint64_t>& in, Array<BoxPair>& out) {
-    size_t next = 0;
-    for (uint64_t key : from) {
-        while (next < in.size() && in[next] < key) ++next;
-        if (next < in.size() && in[next] == key) continue;
-        out.push_back({static_cast<uint32_t>(key >> 32), static_cast<uint32_t>(key)});
-    }
-}
-
 }  // namespace
 
 void WideTree::update(TaskPool& tasks, const BroadBox* boxes, int count, const uint32_t* changed, int changed_count,

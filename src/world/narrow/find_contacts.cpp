@@ -1,4 +1,4 @@
-// Stages 2 and 3: which colliders may touch, and where they do.
+// Stage 3: where colliders touch.
 //
 // Each pair owns its records, its cache and its kept pose; nothing else is written for it, and its results depend on
 // the poses and on what it owns. So pairs may be taken in any order by any worker, and gathered into batches at will.
@@ -13,19 +13,6 @@ namespace {
 constexpr int fewest_per_task = 32;
 // A manifold is kept while no surface has moved by more than this part of the distance at which points are listed.
 constexpr float kept_share = 0.25f;
-
-bool moved_by_constraints(const BodyInfo& info) { return info.type == BodyType::dynamic; }
-
-bool wanted(const WorldData& world, const BoxPair& p) {
-    const ColliderInfo& a = world.colliders.info[p.a];
-    const ColliderInfo& b = world.colliders.info[p.b];
-    if (a.body == b.body || !filters_match(a.filter, b.filter)) return false;
-    if (a.is_trigger && b.is_trigger) return false;
-    const BodyInfo& ba = world.bodies.info[a.body];
-    const BodyInfo& bb = world.bodies.info[b.body];
-    if (!moved_by_constraints(ba) && !moved_by_constraints(bb) && !a.is_trigger && !b.is_trigger) return false;
-    return !world.joints.keeps_apart(a.body, b.body);
-}
 
 uint32_t collider_a(const ColliderPair& p) { return p.flipped ? p.b : p.a; }
 uint32_t collider_b(const ColliderPair& p) { return p.flipped ? p.a : p.b; }
@@ -68,45 +55,38 @@ public:
     }
 
 private:
-    // Lists the pairs whose bodies may have moved; of the others everything still stands.
+    // Asks triggers, and lists the other pairs for the test whether they have moved.
     void gather(uint32_t begin, uint32_t end) {
         MotionBatch& motion = scratch_.motion;
         motion.count = 0;
         for (uint32_t i = begin; i < end; ++i) {
-            ColliderPair& p = world_.pairs.now[i];
-            if (p.kind == PairKind::trigger) {
-                p.hit = overlap(collide_input(world_, p, 0.0f), world_.pairs.caches[p.cache], settings());
-                continue;
-            }
-            uint32_t a = collider_a(p), b = collider_b(p);
-            if (world_.still[a] & world_.still[b] & static_cast<uint8_t>(!p.begun)) {
-                for (uint32_t k = 0; k < p.count; ++k) {
-                    world_.records[p.first_record + k].pair = i;
-                    tally(p.first_record + k);
-                }
-                continue;
-            }
+            const uint32_t number = world_.pairs.listed[i].pair;
+            ColliderPair& p = world_.pairs.pairs[number];
             p.begun = false;
+            if (p.kind == PairKind::trigger) {
+                p.hit = overlap(collide_input(world_, p, 0.0f), world_.pairs.caches[number], settings());
+                continue;
+            }
             int k = motion.count++;
-            scratch_.tested[k] = i;
-            motion.a[k] = static_cast<int32_t>(a), motion.b[k] = static_cast<int32_t>(b);
-            motion.pose[k] = static_cast<int32_t>(p.cache);
+            scratch_.tested[k] = number;
+            motion.a[k] = static_cast<int32_t>(collider_a(p)), motion.b[k] = static_cast<int32_t>(collider_b(p));
+            motion.pose[k] = static_cast<int32_t>(number);
         }
     }
 
     void sort(int i) {
         const MotionBatch& motion = scratch_.motion;
         uint32_t index = scratch_.tested[i];
-        ColliderPair& p = world_.pairs.now[index];
+        ColliderPair& p = world_.pairs.pairs[index];
         if (motion.kept[i] > 0.0f) {
-            keep(p, index, i);
+            keep(p, i);
         } else if (p.kind == PairKind::boxes) {
             auto& boxes = scratch_.boxes;
             int k = boxed_++;
             scratch_.boxed[k] = index;
             boxes.a[k] = motion.a[i], boxes.b[k] = motion.b[i];
             boxes.margin[k] = motion.margin[i];
-            boxes.feature[k] = world_.pairs.poses[p.cache].feature;
+            boxes.feature[k] = world_.pairs.poses[index].feature;
         } else if (p.capacity == 1) {
             collide_single(p, index, motion.margin[i]);
         } else {
@@ -114,7 +94,7 @@ private:
         }
     }
 
-    void keep(const ColliderPair& p, uint32_t index, int i) {
+    void keep(const ColliderPair& p, int i) {
         RefreshBatch& kept = scratch_.kept;
         if (kept.count + p.count > batch_capacity) flush_kept();
         for (uint32_t m = 0; m < p.count; ++m) {
@@ -123,7 +103,6 @@ private:
             kept.pose[k] = scratch_.motion.pose[i];
             kept.record[k] = static_cast<int32_t>(p.first_record + m);
             ContactRecord& r = world_.records[p.first_record + m];
-            r.pair = index;
             if (scale_ != 1.0f) scale_impulses(r, scale_);
         }
     }
@@ -144,11 +123,11 @@ private:
 
     // A pair of convex shapes, or one with a plane.
     void collide_single(ColliderPair& p, uint32_t index, float margin) {
-        PairCache& cache = world_.pairs.caches[p.cache];
+        PairCache& cache = world_.pairs.caches[index];
         Manifold manifold;
         int count = collide(collide_input(world_, p, margin), cache, settings(), &manifold, 1);
         if (count > 0) write_single(p, index, manifold);
-        finish(p, count, margin, cache.clearance);
+        finish(p, index, count, margin, cache.clearance);
     }
 
     template <class SomeManifold>
@@ -167,7 +146,7 @@ private:
     }
 
     void collide_mesh(ColliderPair& p, uint32_t index, float margin) {
-        PairCache& cache = world_.pairs.caches[p.cache];
+        PairCache& cache = world_.pairs.caches[index];
         Manifold manifolds[max_mesh_manifolds];
         int count = collide(collide_input(world_, p, margin), cache, settings(), manifolds, p.capacity);
         const ShapeFrame &a = world_.frames[collider_a(p)], &b = world_.frames[collider_b(p)];
@@ -183,7 +162,7 @@ private:
             else clear_impulses(r);
             r.pair = index;
         }
-        finish(p, count, margin, cache.clearance);
+        finish(p, index, count, margin, cache.clearance);
     }
 
     // The pair's record number `i`, with its lasting parts filled in.
@@ -201,10 +180,10 @@ private:
         world_.narrow_kernels.collide_boxes(batch);
         for (int k = 0; k < boxed_; ++k) {
             uint32_t index = scratch_.boxed[k];
-            ColliderPair& p = world_.pairs.now[index];
-            KeptPose& pose = world_.pairs.poses[p.cache];
+            ColliderPair& p = world_.pairs.pairs[index];
+            KeptPose& pose = world_.pairs.poses[index];
             if (boxes.clearance[k] > boxes.margin[k]) {
-                finish(p, 0, boxes.margin[k], boxes.clearance[k]);
+                finish(p, index, 0, boxes.margin[k], boxes.clearance[k]);
             } else if (boxes.out[k].count == 0) {
                 // The faces or edges that face each other do not overlap: the boxes are apart, corner to edge or corner
                 // to corner, and the separating axis is not the direction of the shortest distance.
@@ -213,16 +192,16 @@ private:
             } else {
                 pose.feature = boxes.feature[k];
                 write_single(p, index, boxes.out[k]);
-                finish(p, 1, boxes.margin[k], 0.0f);
+                finish(p, index, 1, boxes.margin[k], 0.0f);
             }
         }
     }
 
     // `clearance`: least distance of the surfaces, where there are no manifolds.
-    void finish(ColliderPair& p, int count, float margin, float clearance) {
+    void finish(ColliderPair& p, uint32_t index, int count, float margin, float clearance) {
         p.count = static_cast<uint8_t>(count);
         for (int i = 0; i < count; ++i) tally(p.first_record + static_cast<uint32_t>(i));
-        KeptPose& pose = world_.pairs.poses[p.cache];
+        KeptPose& pose = world_.pairs.poses[index];
         pose.clearance = unkept;
         if (p.kind == PairKind::round) return;
         uint32_t a = collider_a(p), b = collider_b(p);
@@ -247,59 +226,49 @@ private:
     float scale_;
 };
 
+void add_overlap(WorldData& world, const ColliderPair& p) {
+    bool first_is_trigger = world.colliders.info[p.a].is_trigger;
+    uint32_t trigger = first_is_trigger ? p.a : p.b, other = first_is_trigger ? p.b : p.a;
+    world.overlaps.push_back({world.bodies.id(world.colliders.info[trigger].body),
+                              world.bodies.id(world.colliders.info[other].body), world.colliders.id(trigger),
+                              world.colliders.id(other)});
+}
+
 }  // namespace
 
-void begin_pair(WorldData& world, ColliderPair& p) {
-    const ColliderStore& c = world.colliders;
-    const Geometry &a = c.geometry[p.a], &b = c.geometry[p.b];
-    p.flipped = !moved_by_constraints(world.bodies.info[c.info[p.b].body]);
-    p.fixed_a = p.flipped || !moved_by_constraints(world.bodies.info[c.info[p.a].body]);
-    if (c.info[p.a].is_trigger || c.info[p.b].is_trigger) {
-        p.kind = PairKind::trigger;
-        return;
-    }
-    world.pairs.place_records(p, a.kind == GeometryKind::mesh || b.kind == GeometryKind::mesh);
-    p.kind = is_sharp_box(a) && is_sharp_box(b) ? PairKind::boxes
-             : has_closed_form(a, b)            ? PairKind::round
-                                                : PairKind::general;
-}
-
 void list_contacts(WorldData& world) {
+    RestingContacts& rest = world.resting;
     world.touching.clear();
-    world.overlaps.clear();
-    for (const ColliderPair& p : world.pairs.now) {
-        for (uint32_t k = 0; k < p.count; ++k) world.touching.push_back(p.first_record + k);
-        if (!p.hit) continue;
-        bool first_is_trigger = world.colliders.info[p.a].is_trigger;
-        uint32_t trigger = first_is_trigger ? p.a : p.b, other = first_is_trigger ? p.b : p.a;
-        world.overlaps.push_back({world.bodies.id(world.colliders.info[trigger].body),
-                                  world.bodies.id(world.colliders.info[other].body), world.colliders.id(trigger),
-                                  world.colliders.id(other)});
+    if (rest.hits_changed) {
+        world.overlaps.clear();
+        for (uint32_t number : rest.hits) add_overlap(world, world.pairs.pairs[number]);
+        rest.listed_hits = world.overlaps.count();
+        rest.hits_changed = false;
     }
-}
-
-void find_box_pairs(WorldData& world) {
-    world.box_pairs.clear();
-    world.broad_phase.find_pairs(world.tasks, world.box_pairs);
-}
-
-void match_pairs(WorldData& world) {
-    size_t kept = 0;
-    for (const BoxPair& p : world.box_pairs)
-        if (wanted(world, p)) world.box_pairs[kept++] = p;
-    world.box_pairs.resize_unset(kept);
-    world.pairs.update(world.box_pairs);
-    for (uint32_t i : world.pairs.begun) begin_pair(world, world.pairs.now[i]);
+    world.overlaps.resize_unset(static_cast<size_t>(rest.listed_hits));
+    for (const ListedPair& entry : world.pairs.listed) {
+        const ColliderPair& p = world.pairs.pairs[entry.pair];
+        for (uint32_t k = 0; k < p.count; ++k) {
+            rest.place[p.first_record + k] = static_cast<uint32_t>(world.touching.size());
+            world.touching.push_back(p.first_record + k);
+        }
+        if (p.hit) add_overlap(world, p);
+    }
 }
 
 void find_contacts(WorldData& world, float dt) {
     float h = dt / static_cast<float>(world.config.solver_steps);
     float scale = world.last_h > 0.0f ? h / world.last_h : 0.0f;
-    world.records.resize_unset(world.pairs.record_count);
-    world.found_separations.resize_unset(world.pairs.record_count);
+    world.last_h = h;
+    world.records.resize_unset(world.pairs.record_count());
+    world.found_separations.resize_unset(world.records.size());
+    world.resting.place.resize_unset(world.records.size());
+    for (Array<uint32_t>* list : {&world.touching, &world.active, &world.unsorted, &world.resting.records})
+        list->reserve(world.records.capacity());
+    world.touched_sleepers.reserve(world.records.capacity());
     world.narrow_scratch.resize_unset(static_cast<size_t>(world.tasks.workers()));
     for (NarrowScratch& s : world.narrow_scratch) s.contact_points = 0, s.max_penetration = 0.0f;
-    int count = world.pairs.now.count();
+    int count = world.pairs.listed.count();
     int grain = count / (8 * world.tasks.workers());
     grain = grain < fewest_per_task ? fewest_per_task : grain > batch_capacity ? batch_capacity : grain;
     world.tasks.for_each(count, grain, [&](int begin, int end, int worker) {
@@ -308,11 +277,11 @@ void find_contacts(WorldData& world, float dt) {
             chunk.run(i, end - i < batch_capacity ? end : i + batch_capacity);
     });
     list_contacts(world);
-    world.statistics.contact_points = 0;
-    world.statistics.max_penetration = 0.0f;
+    world.awake_points = 0;
+    world.awake_penetration = 0.0f;
     for (const NarrowScratch& s : world.narrow_scratch) {
-        world.statistics.contact_points += s.contact_points;
-        world.statistics.max_penetration = maximum(world.statistics.max_penetration, s.max_penetration);
+        world.awake_points += s.contact_points;
+        world.awake_penetration = maximum(world.awake_penetration, s.max_penetration);
     }
 }
 

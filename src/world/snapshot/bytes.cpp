@@ -105,6 +105,7 @@ template <class Bytes>
 void body(Bytes& bytes, SavedBody& b) {
     flags(bytes, b.asleep, b.has_forces, b.placed, b.capped, b.contained, b.stopped, b.loaded, b.fixed);
     if (b.fixed) return;
+    flags(bytes, b.mover);
     bytes(b.pose, b.still_time);
     if (b.asleep) bytes(b.momenta.x_low);
     else bytes(b.momenta, b.change);
@@ -117,14 +118,15 @@ void joint(Bytes& bytes, SavedJoint& j) {
     JointImpulses& i = j.impulses;
     bytes(j.motor.target_velocity, j.motor.max_force);
     bytes(i.linear, i.angular, i.limit, i.motor, i.spring, i.flags);
-    bytes(j.report.impulse, j.report.angular_impulse, j.report.h);
+    bytes(i.impulse, i.angular_impulse, i.h);
 }
 
 template <class Bytes>
 void pair(Bytes& bytes, SavedPair& p) {
     bool cached = p.cache.feature != 0 || p.cache.clearance != 0.0f || p.cache.gjk.count > 0;
-    flags(bytes, p.hit, p.begun, p.kept, cached);
+    flags(bytes, p.hit, p.begun, p.kept, cached, p.listed);
     bytes(p.a, p.b, p.contacts);
+    if (!p.listed) bytes(p.rest_h);
     if (cached) {
         GjkCache& g = p.cache.gjk;
         bytes(p.cache.feature, p.cache.clearance, g.count);
@@ -162,6 +164,7 @@ void state(Bytes& bytes, SavedState& s) {
     slots(bytes, s.joint_slots);
     bytes.list(s.bodies, body<Bytes>);
     bytes.list(s.joints, joint<Bytes>);
+    bytes.list(s.boxes, [](Bytes& b, BroadBox& box) { b(box.lower, box.upper, box.index); });
     bytes.list(s.pairs, pair<Bytes>);
     bytes.list(s.contacts, contact<Bytes>);
 }

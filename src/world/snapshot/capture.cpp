@@ -1,4 +1,6 @@
 // From a world to a saved state, and what tells worlds apart.
+#include <algorithm>
+
 #include "base/hash.h"
 #include "world/snapshot/saved_state.h"
 
@@ -67,7 +69,9 @@ SavedBody capture_body(const WorldData& world, uint32_t slot) {
     b.change = world.bodies.change[slot];
     b.forces = world.bodies.forces[slot];
     b.still_time = info.still_time;
-    b.asleep = info.asleep, b.has_forces = info.has_forces, b.placed = info.placed;
+    b.asleep = info.asleep, b.has_forces = info.has_forces;
+    b.placed = info.placed_at == static_cast<uint32_t>(world.steps);
+    b.mover = info.mover_place != no_slot;
     b.capped = info.capped, b.contained = info.contained, b.stopped = info.stopped;
     if (slot < world.island_loads.size()) {
         const IslandLoad& load = world.island_loads[slot];
@@ -77,17 +81,31 @@ SavedBody capture_body(const WorldData& world, uint32_t slot) {
     return b;
 }
 
-void capture_pair(const WorldData& world, const ColliderPair& p, SavedState& state) {
+void capture_pair(const WorldData& world, uint32_t number, SavedState& state) {
+    const ColliderPair& p = world.pairs.pairs[number];
     SavedPair s;
     s.a = p.a, s.b = p.b;
     s.contacts = p.count;
     s.hit = p.hit, s.begun = p.begun;
-    s.cache = world.pairs.caches[p.cache];
-    s.pose = world.pairs.poses[p.cache];
+    s.listed = p.listed, s.rest_h = p.rest_h;
+    s.cache = world.pairs.caches[number];
+    s.pose = world.pairs.poses[number];
     s.kept = s.pose.clearance != unkept;
     state.pairs.push_back(s);
     for (uint32_t i = p.first_record; i < p.first_record + p.count; ++i)
         state.contacts.push_back({world.records[i], world.found_separations[i]});
+}
+
+// In the order of colliders, whether listed or not.
+void capture_pairs(const WorldData& world, SavedState& state) {
+    const Array<ColliderPair>& pairs = world.pairs.pairs;
+    std::vector<uint32_t> numbers;
+    for (size_t i = 0; i < pairs.size(); ++i)
+        if (pairs[i].a != no_pair) numbers.push_back(static_cast<uint32_t>(i));
+    std::sort(numbers.begin(), numbers.end(), [&](uint32_t x, uint32_t y) {  // order: total
+        return pairs[x].a != pairs[y].a ? pairs[x].a < pairs[y].a : pairs[x].b < pairs[y].b;
+    });
+    for (uint32_t number : numbers) capture_pair(world, number, state);
 }
 
 }  // namespace
@@ -110,9 +128,9 @@ void capture(const WorldData& world, SavedState& state) {
     state.steps = world.steps;
     for (uint32_t slot : world.bodies.slots.order()) state.bodies.push_back(capture_body(world, slot));
     for (uint32_t slot : world.joints.slots.order())
-        state.joints.push_back({world.joints.info[slot].motor, world.joints.impulses[slot], world.joints.report[slot]});
-    for (const ColliderPair& p : world.pairs.now)
-        if (p.cache != no_cache) capture_pair(world, p, state);
+        state.joints.push_back({world.joints.info[slot].motor, joint_impulses(world, slot)});
+    state.boxes.append(world.moving_boxes.data(), world.moving_boxes.size());
+    capture_pairs(world, state);
 }
 
 std::vector<uint8_t> World::snapshot() const {

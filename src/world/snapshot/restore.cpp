@@ -43,15 +43,41 @@ bool good_contact(const SavedContact& c) {
     return true;
 }
 
-// Which of the world's colliders the snapshot knows, by slot.
-std::vector<bool> known_colliders(const WorldData& world, uint32_t bodies) {
-    std::vector<bool> known(world.colliders.slots.capacity(), false);
-    for (uint32_t i = 0; i < bodies; ++i) {
+// Of each collider of the world, by slot: the body among the snapshot's that it belongs to; null: it knows none.
+std::vector<const SavedBody*> owners(const WorldData& world, const SavedState& state) {
+    std::vector<const SavedBody*> owner(world.colliders.slots.capacity(), nullptr);
+    for (uint32_t i = 0; i < state.body_slots.count; ++i) {
         uint32_t slot = world.bodies.slots.in_order(static_cast<int>(i));
         for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next)
-            known[c] = true;
+            owner[c] = &state.bodies[i];
     }
-    return known;
+    return owner;
+}
+
+// Static bodies never take part in steps, those awake always do.
+Status check_bodies(const WorldData& world, const SavedState& state) {
+    for (uint32_t i = 0; i < state.body_slots.count; ++i) {
+        const SavedBody& b = state.bodies[i];
+        const BodyType type = world.bodies.info[world.bodies.slots.in_order(static_cast<int>(i))].type;
+        if (b.fixed != (type == BodyType::fixed)) return bad("takes a static body for a moving one");
+        bool good = b.fixed ? !b.mover : good_body(b) && (b.mover || b.asleep || type == BodyType::kinematic);
+        if (!good) return bad("holds a body whose state cannot be");
+    }
+    return {};
+}
+
+// Every collider of the bodies that do not take part has its box, and none has two.
+Status check_boxes(const WorldData& world, const SavedState& state) {
+    std::vector<const SavedBody*> without = owners(world, state);
+    for (const BroadBox& box : state.boxes) {
+        bool good = box.index < without.size() && without[box.index] && !without[box.index]->fixed;
+        for (int d = 0; d < 3 && good; ++d) good = box.lower[d] <= box.upper[d];
+        if (!good) return bad("holds a box that cannot be");
+        without[box.index] = nullptr;
+    }
+    for (const SavedBody* body : without)
+        if (body && !body->fixed && !body->mover) return bad("lacks a box");
+    return {};
 }
 
 int room_for_contacts(const WorldData& world, const SavedPair& p) {
@@ -62,12 +88,14 @@ int room_for_contacts(const WorldData& world, const SavedPair& p) {
 }
 
 Status check_pairs(const WorldData& world, const SavedState& state) {
-    const std::vector<bool> known = known_colliders(world, state.body_slots.count);
+    const std::vector<const SavedBody*> owner = owners(world, state);
     size_t contacts = 0;
     const SavedPair* before = nullptr;
     for (const SavedPair& p : state.pairs) {
         bool sorted = p.a < p.b && (!before || before->a < p.a || (before->a == p.a && before->b < p.b));
-        if (!sorted || p.b >= known.size() || !known[p.a] || !known[p.b]) return bad("holds a pair that cannot be");
+        if (!sorted || p.b >= owner.size() || !owner[p.a] || !owner[p.b] ||
+            (!p.listed && (owner[p.a]->mover || owner[p.b]->mover || !is_finite(p.rest_h))))
+            return bad("holds a pair that cannot be");
         if (p.cache.gjk.count > 4 || p.contacts > room_for_contacts(world, p)) return bad("holds too many contacts");
         contacts += p.contacts;
         before = &p;
@@ -85,7 +113,7 @@ void apply_body(WorldData& world, uint32_t slot, const SavedBody& b) {
     world.bodies.change[slot] = b.change;
     world.bodies.forces[slot] = b.forces;
     info.still_time = b.still_time;
-    info.asleep = b.asleep, info.has_forces = b.has_forces, info.placed = b.placed;
+    info.asleep = b.asleep, info.has_forces = b.has_forces;
     info.capped = b.capped, info.contained = b.contained, info.stopped = b.stopped;
     IslandLoad load{};
     load.step = b.loaded ? world.steps : 0;
@@ -109,23 +137,64 @@ void apply_frames(WorldData& world, uint32_t slot) {
 void apply_bodies(WorldData& world, const SavedState& state) {
     world.island_loads.resize(world.bodies.slots.capacity());
     world.frames.resize(world.colliders.slots.capacity());
-    world.still.resize(world.frames.size());
+    world.at_rest.resize(world.frames.size());
+    Movers& movers = world.movers;
+    movers.bodies.clear();
     size_t next = 0;
     for (uint32_t slot : world.bodies.slots.order()) {
         const SavedBody& saved = state.bodies[next++];
-        if (saved.fixed) world.bodies.info[slot].placed = saved.placed;
-        else apply_body(world, slot, saved);
+        BodyInfo& info = world.bodies.info[slot];
+        info.placed_at = static_cast<uint32_t>(world.steps) - (saved.placed ? 0u : 1u);
+        info.mover_place = saved.mover ? static_cast<uint32_t>(movers.bodies.size()) : no_slot;
+        if (saved.mover) movers.bodies.push_back(slot);
+        else info.solver_index = static_body;
+        if (!saved.fixed) apply_body(world, slot, saved);
         apply_frames(world, slot);
+        for (uint32_t c = info.first_collider; c != no_slot; c = world.colliders.info[c].next)
+            world.at_rest[c] = saved.mover ? 0 : 1;
     }
+    movers.sorted = movers.bodies.size();
+    movers.leaving = movers.joints_changed = true;  // to be listed anew
+}
+
+// The broad phase is to find all pairs anew, among the same boxes.
+void apply_boxes(WorldData& world, const SavedState& state) {
+    world.moving_boxes.clear();
+    world.moving_boxes.append(state.boxes.data(), state.boxes.size());
+    world.box_place.assign(world.frames.size(), no_box);
+    for (size_t i = 0; i < state.boxes.size(); ++i)
+        world.box_place[state.boxes[i].index] = static_cast<uint32_t>(i);
+    for (Array<uint32_t>* list : {&world.changed_boxes, &world.forgotten}) list->clear();
+    world.rejoined.clear();
+    world.fixed_changed = world.all_pairs_sought = true;
 }
 
 void apply_joints(WorldData& world, const SavedState& state) {
+    forget_joint_records(world);
+    world.joint_groups_changed = true;
     size_t next = 0;
     for (uint32_t slot : world.joints.slots.order()) {
         const SavedJoint& joint = state.joints[next++];
         world.joints.info[slot].motor = joint.motor;
         world.joints.impulses[slot] = joint.impulses;
-        world.joints.report[slot] = joint.report;
+    }
+}
+
+void apply_pair(WorldData& world, const SavedPair& saved, const SavedContact* contacts) {
+    const uint32_t number = begin_pair(world, {saved.a, saved.b});
+    ColliderPair& p = world.pairs.pairs[number];
+    world.records.resize(world.pairs.record_count(), ContactRecord{});
+    world.found_separations.resize(world.pairs.record_count(), FoundSeparations{});
+    world.pairs.caches[number] = saved.cache;
+    if (saved.kept) world.pairs.poses[number] = saved.pose;
+    p.count = p.prepared = saved.contacts;
+    p.hit = saved.hit, p.begun = saved.begun;
+    for (uint32_t k = 0; k < p.count; ++k) {
+        ContactRecord& r = world.records[p.first_record + k];
+        r = contacts[k].record;
+        prepare_record(world, p, r);
+        r.pair = number;
+        world.found_separations[p.first_record + k] = contacts[k].found;
     }
 }
 
@@ -133,25 +202,25 @@ void apply_pairs(WorldData& world, const SavedState& state) {
     world.pairs.clear();
     world.records.clear();
     world.found_separations.clear();
-    const SavedContact* contact = state.contacts.data();
-    for (const SavedPair& saved : state.pairs) {
-        const uint32_t index = static_cast<uint32_t>(world.pairs.now.size());
-        ColliderPair& p = world.pairs.add(saved.a, saved.b);
-        begin_pair(world, p);
-        world.records.resize(world.pairs.record_count, ContactRecord{});
-        world.found_separations.resize(world.pairs.record_count, FoundSeparations{});
-        world.pairs.caches[p.cache] = saved.cache;
-        if (saved.kept) world.pairs.poses[p.cache] = saved.pose;
-        p.count = p.prepared = saved.contacts;
-        p.hit = saved.hit, p.begun = saved.begun;
-        for (uint32_t k = 0; k < p.count; ++k, ++contact) {
-            ContactRecord& r = world.records[p.first_record + k];
-            r = contact->record;
-            prepare_record(world, p, r);
-            r.pair = index;
-            world.found_separations[p.first_record + k] = contact->found;
-        }
+    RestingContacts& rest = world.resting;
+    for (Array<uint32_t>* list : {&rest.records, &rest.hits}) list->clear();
+    rest.points = 0, rest.penetration = 0.0f;
+    rest.penetration_stale = false, rest.hits_changed = true;
+    const SavedContact* contacts = state.contacts.data();
+    for (const SavedPair& saved : state.pairs) {  // they get the numbers 0, 1, 2 ...
+        apply_pair(world, saved, contacts);
+        contacts += saved.contacts;
     }
+    rest.place.resize_unset(world.records.size());
+    world.pairs.merge();
+    auto saved_of = [&](uint32_t number) -> const SavedPair& { return state.pairs[number]; };
+    auto number_of = [&](const ColliderPair& p) { return static_cast<uint32_t>(&p - world.pairs.pairs.data()); };
+    world.pairs.sweep([&](const ColliderPair& p) { return !saved_of(number_of(p)).listed; },
+                      [&](uint32_t number) {
+                          rest_pair(world, number);
+                          world.pairs.pairs[number].rest_h = saved_of(number).rest_h;
+                      });
+    world.pairs_to_rest = true;
     list_contacts(world);
 }
 
@@ -165,16 +234,11 @@ Status check_saved(const WorldData& world, const SavedState& state) {
     if (!slots) return bad("counts its bodies and joints wrongly");
     if (state.bodies.size() != state.body_slots.count || state.joints.size() != state.joint_slots.count)
         return bad("holds another number of bodies or joints than it says");
-    for (uint32_t i = 0; i < state.body_slots.count; ++i) {
-        uint32_t slot = world.bodies.slots.in_order(static_cast<int>(i));
-        if (state.bodies[i].fixed != (world.bodies.info[slot].type == BodyType::fixed))
-            return bad("takes a static body for a moving one");
-    }
     if (!is_finite(state.gravity) || !(state.last_h >= 0.0f) || !is_finite(state.last_h) ||
         !(state.time >= 0.0 && state.time < 1e300))
         return bad("holds a time or a gravity that cannot be");
-    for (const SavedBody& b : state.bodies)
-        if (!b.fixed && !good_body(b)) return bad("holds a body whose state cannot be");
+    if (Status s = check_bodies(world, state); !s) return s;
+    if (Status s = check_boxes(world, state); !s) return s;
     return check_pairs(world, state);
 }
 
@@ -187,9 +251,9 @@ void apply(WorldData& world, const SavedState& state) {
     world.time = state.time;
     world.steps = state.steps;
     apply_bodies(world, state);
+    apply_boxes(world, state);
     apply_joints(world, state);
     apply_pairs(world, state);
-    world.fixed_changed = true;
     world.query_scene.all_moved();
 }
 

@@ -24,6 +24,7 @@ struct SavedBody {
     BodyForces forces{};
     float still_time = 0.0f;
     bool fixed = false;  // a static body: nothing but `placed` is saved of it
+    bool mover = false;
     bool asleep = false, has_forces = false, placed = false, capped = false, contained = false, stopped = false;
     // Of the island that it was in: class of substeps, and how long fewer would have done.
     bool loaded = false;
@@ -33,7 +34,6 @@ struct SavedBody {
 struct SavedJoint {
     Motor motor;
     JointImpulses impulses;
-    JointReport report;
 };
 
 struct SavedContact {
@@ -45,6 +45,8 @@ struct SavedPair {
     uint32_t a = 0, b = 0;  // collider slots
     uint8_t contacts = 0;   // of SavedState::contacts, in order
     bool hit = false, begun = false;
+    bool listed = true;
+    float rest_h = 0.0f;  // where it is not listed
     PairCache cache;
     bool kept = false;  // `pose` holds
     KeptPose pose{};
@@ -59,6 +61,7 @@ struct SavedState {
     SavedSlots body_slots, collider_slots, joint_slots;
     Array<SavedBody> bodies;  // these two in creation order
     Array<SavedJoint> joints;
+    Array<BroadBox> boxes;  // of moving colliders, as the broad phase knows them
     Array<SavedPair> pairs;
     Array<SavedContact> contacts;
 };
