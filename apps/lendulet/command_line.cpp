@@ -58,7 +58,7 @@ void add_run_options(CLI::App& command, RunOptions& options, RawOptions& raw) {
         ->type_name("N");
     command
         .add_option("--broad-phase", raw.broad_phase,
-                    "all-pairs, sweep-1, sweep-3, rtree-quadratic, rtree-star, rtree-str or rtree-omt")
+                    "all-pairs, sweep-1, sweep-3, rtree-quadratic, rtree-star, rtree-str, rtree-omt or default")
         ->type_name("NAME");
     command.add_option("--simplex", raw.simplex, "barycentric or half-space")->type_name("NAME");
     command.add_option("--integrator", raw.integrator, "momentum, explicit-euler, symplectic-euler or runge-kutta-4")

@@ -47,7 +47,7 @@ struct WorldConfig {
     float static_separation_speed = 3.0f;  // m/s: the same against static and kinematic bodies
     float friction = 0.5f;                 // default static and dynamic coefficient
     float restitution = 0.0f;              // default bounciness, 0 .. 1
-    BroadPhaseType broad_phase = BroadPhaseType::rtree_omt;
+    BroadPhaseType broad_phase = BroadPhaseType::wide_tree;
     SimplexSolver simplex = SimplexSolver::half_space;
     Integrator integrator = Integrator::momentum;
     int workers = 1;  // threads including the caller's, 1 .. 64

@@ -30,6 +30,15 @@ void BroadPhase::set_moving(const BroadBox* boxes, int count, TaskPool* tasks) {
     std::visit([&](auto& s) { s.set_moving(boxes, count, tasks); }, structure_);
 }
 
+void BroadPhase::move_all(const BroadBox* boxes, int count, TaskPool* tasks) {
+    std::visit(
+        [&](auto& s) {
+            if constexpr (requires { s.move_all(boxes, count, tasks); }) s.move_all(boxes, count, tasks);
+            else s.set_moving(boxes, count, tasks);
+        },
+        structure_);
+}
+
 void BroadPhase::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
     std::visit([&](auto& s) { s.find_pairs(tasks, out); }, structure_);
 }

@@ -28,6 +28,10 @@ public:
     void set_fixed(const BroadBox* boxes, int count, TaskPool* tasks = nullptr);
     void set_moving(const BroadBox* boxes, int count, TaskPool* tasks = nullptr);
 
+    // As set_moving, where most boxes are near where that of the same place was: a structure may then keep its order
+    // instead of finding it anew. Nothing that is found depends on which of the two was called.
+    void move_all(const BroadBox* boxes, int count, TaskPool* tasks = nullptr);
+
     // Appends every overlapping pair of the moving set with itself and with the fixed set, each once; the order depends
     // on the boxes alone (those of now and, for structures that learn, those before), never on the number of workers.
     void find_pairs(TaskPool& tasks, Array<BoxPair>& out);

@@ -2,7 +2,7 @@
 // enumerator in lendulet/options.h, its name in names.cpp.
 //
 // A structure has, besides what BroadPhase has under the same name (set_fixed, set_moving, find_pairs, update, boxes,
-// bytes, check):
+// bytes, check and, where it has a use for it, move_all):
 //   template <class Visit> void visit_overlapping(const float lower[3], const float upper[3], Visit&& visit) const;
 //       visit(index) for every box of both sets that overlaps, each once
 //   void cast(BoxCast& cast) const;           offers every box of both sets that could better the best hit

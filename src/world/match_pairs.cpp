@@ -128,7 +128,7 @@ void find_box_pairs(WorldData& world) {
     world.all_pairs_sought |= world.fixed_changed || int64_t{world.changed_boxes.count()} * most_changes > count;
     world.fixed_changed = false;
     if (world.all_pairs_sought) {
-        world.broad_phase.set_moving(boxes, count, &world.tasks);
+        world.broad_phase.move_all(boxes, count, &world.tasks);
         world.broad_phase.find_pairs(world.tasks, world.box_pairs);
     } else if (!world.changed_boxes.empty() || count != world.known_boxes) {
         tidy_changes(world);

@@ -68,6 +68,7 @@ void list_joints(WorldData& world) {
     m.joints.clear();
     m.joints_changed = false;
     if (joints.count() == 0) return;
+    m.joints.reserve(joints.info.capacity());
     auto is_mover = [&](uint32_t body) { return world.bodies.info[body].mover_place != no_slot; };
     for (uint32_t slot : m.bodies)
         joints.for_each_of(slot, [&](uint32_t joint) {

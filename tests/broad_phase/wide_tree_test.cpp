@@ -74,6 +74,14 @@ public:
         ASSERT_EQ(sorted(all_pairs(tree, tasks)), now) << what;
     }
 
+    // Hands all boxes over at once, and compares with brute force.
+    void move_all_and_compare(const std::string& what) {
+        tree.move_all(boxes.data(), static_cast<int>(boxes.size()), &tasks);
+        before_ = boxes;
+        ASSERT_STREQ(tree.check(), "") << what;
+        ASSERT_EQ(sorted(all_pairs(tree, tasks)), expected_pairs(fixed_, boxes)) << what;
+    }
+
     Boxes boxes;
 
 private:
@@ -199,6 +207,46 @@ TEST(WideTreeTest, BoxesThatDriftApartAreBuiltAnew) {
         if (HasFatalFailure()) return;
     }
     EXPECT_GT(scene.tree.builds(), 1);
+}
+
+TEST(WideTreeTest, AllBoxesMovedAtOnceKeepTheirLanesWhileTheyStayNear) {
+    Scene scene(make_boxes("plane", 50, 1, 100000), make_boxes("uniform", 1000, 2), 0, 2);
+    Random random(5);
+    for (int frame = 0; frame < 10; ++frame) {
+        for (BroadBox& box : scene.boxes) {
+            move_by(box, random, 0.1f);
+            box.lower[1] -= 1.0f, box.upper[1] -= 1.0f;  // all of them fall
+        }
+        scene.move_all_and_compare("frame " + std::to_string(frame));
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_EQ(scene.tree.builds(), 1);
+    scene.boxes[7].upper[0] = infinity;  // has to stand beside the tree
+    scene.move_all_and_compare("an infinite box");
+    EXPECT_EQ(scene.tree.builds(), 2);
+    std::swap(scene.boxes[3], scene.boxes[900]);
+    scene.move_all_and_compare("two that changed places");
+    for (BroadBox& box : scene.boxes) move_by(box, random, 10.0f);
+    scene.move_all_and_compare("all elsewhere");
+    EXPECT_EQ(scene.tree.builds(), 3);
+    scene.boxes.pop_back();
+    scene.move_all_and_compare("one gone");
+    EXPECT_EQ(scene.tree.builds(), 4);
+}
+
+TEST(WideTreeTest, AllBoxesMovedAtOnceAmongOtherChanges) {
+    Scene scene(make_boxes("plane", 50, 1, 100000), make_boxes("uniform", 700, 2));
+    Random random(6);
+    for (int frame = 0; frame < 60; ++frame) {
+        const int moved = frame % 3 ? 700 : 20;
+        for (int k = 0; k < moved; ++k)
+            move_by(scene.boxes[static_cast<size_t>(random.below(static_cast<int>(scene.boxes.size())))], random,
+                    frame % 5 ? 0.05f : 3.0f);
+        if (frame % 7 == 6) scene.boxes.pop_back();
+        if (frame % 3 == 1) scene.move_all_and_compare("frame " + std::to_string(frame));
+        else scene.update_and_compare("frame " + std::to_string(frame));
+        if (HasFatalFailure()) return;
+    }
 }
 
 TEST(WideTreeTest, TheLastBoxInTheHoleOfARemovedOneKeepsItsLane) {

@@ -25,6 +25,10 @@ void WideTree::set_moving(const BroadBox* boxes, int count, TaskPool* tasks) {
     ++builds_;
 }
 
+void WideTree::move_all(const BroadBox* boxes, int count, TaskPool* tasks) {
+    if (!moving_.refill(boxes, count, tasks)) set_moving(boxes, count, tasks);
+}
+
 void WideTree::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
     constexpr int grain = 4;  // groups
     const WideTreeView moving = moving_.view(), fixed = fixed_.view();

@@ -35,6 +35,7 @@ public:
     // As in BroadPhase.
     void set_fixed(const BroadBox* boxes, int count, TaskPool* tasks = nullptr);
     void set_moving(const BroadBox* boxes, int count, TaskPool* tasks = nullptr);
+    void move_all(const BroadBox* boxes, int count, TaskPool* tasks = nullptr);
     void find_pairs(TaskPool& tasks, Array<BoxPair>& out);
     void update(TaskPool& tasks, const BroadBox* boxes, int count, const uint32_t* changed, int changed_count,
                 Array<BoxPair>& begun, Array<BoxPair>& ended);

@@ -22,11 +22,6 @@ bool measurable(const BroadBox& box) {
     return yes;
 }
 
-float size_of(const Bounds6& b) {
-    float size = (b.at[3] - b.at[0]) + (b.at[4] - b.at[1]) + (b.at[5] - b.at[2]);
-    return size > 0 ? size : 0;  // of no boxes: 0
-}
-
 Bounds6 home_of(const Bounds6& b) {
     float margin = leeway * maximum(maximum(b.at[3] - b.at[0], b.at[4] - b.at[1]), b.at[5] - b.at[2]);
     Bounds6 home;
@@ -75,18 +70,10 @@ void WideTreeSet::begin_changes() {
     wear_ = 0;
     size_t groups = groups_.size();
     home_.resize_unset(groups);
-    size_.resize_unset(groups);
     first_row_.resize_unset(groups);
     changed_.assign(groups, 0);
     is_touched_.assign(groups, 0);
-    size_sum_ = 0;
-    for (size_t i = 0; i < groups; ++i) {
-        Bounds6 bounds = bounds_at(0, static_cast<uint32_t>(i));
-        home_[i] = home_of(bounds);
-        size_[i] = size_of(bounds);
-        size_sum_ += size_[i];
-    }
-    built_size_ = size_sum_;
+    for (size_t i = 0; i < groups; ++i) home_[i] = home_of(bounds_at(0, static_cast<uint32_t>(i)));
 }
 
 BroadBox WideTreeSet::box_at(uint32_t place) const {
@@ -172,6 +159,7 @@ void WideTreeSet::clear_lane(uint32_t lane) {
 }
 
 void WideTreeSet::remove(uint32_t place) {
+    shuffled_ = true;
     uint32_t lane = lane_of_[place];
     lane_of_[place] = no_box;
     if (lane & beside) {
@@ -273,6 +261,7 @@ void WideTreeSet::add_group() {
 }
 
 void WideTreeSet::insert(uint32_t place, const BroadBox& box) {
+    shuffled_ = true;
     if (!measurable(box)) {
         lane_of_[place] = beside | static_cast<uint32_t>(unbounded_.count());
         unbounded_.push_back(box);
@@ -292,7 +281,7 @@ void WideTreeSet::insert(uint32_t place, const BroadBox& box) {
 // best moment would have cost. Groups that have grown by a quarter call for one at once.
 bool WideTreeSet::worn(int queries) {
     wear_ += static_cast<int64_t>(loose_lanes()) * queries;
-    return wear_ * 4 > static_cast<int64_t>(count_) * group_lanes || size_sum_ > 1.25 * built_size_;
+    return wear_ * 4 > static_cast<int64_t>(count_) * group_lanes || size_sum_ > most_growth * built_size_;
 }
 
 }  // namespace lendulet

@@ -45,16 +45,36 @@ void WideTreeSet::build(const BroadBox* boxes, int count, TaskPool* tasks) {
     int lanes = place_.count();
     groups_.resize_unset(static_cast<size_t>((lanes + group_lanes - 1) / group_lanes));
     plan_levels(0);
+    fill_groups(boxes, tasks);
+    built_size_ = size_sum_;
+    shuffled_ = false;
+}
+
+bool WideTreeSet::refill(const BroadBox* boxes, int count, TaskPool* tasks) {
+    if (count != count_ || shuffled_) return false;
+    for (size_t i = 0; i < unbounded_.size(); ++i) unbounded_[i] = boxes[unbounded_place_[i]];
+    mapped_ = false;
+    fill_groups(boxes, tasks);
+    return size_sum_ <= most_growth * built_size_;
+}
+
+// Each box into the lane that its place has, and all bounds.
+void WideTreeSet::fill_groups(const BroadBox* boxes, TaskPool* tasks) {
+    const int lanes = place_.count();
+    size_.resize_unset(groups_.size());
     auto fill = [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i) {
             int first = i * group_lanes, n = lanes - first;
             Bounds6 bounds;
             kernels_.fill(groups_[i], boxes, place_.data() + first, n < group_lanes ? n : group_lanes, bounds);
             set_bounds(0, static_cast<uint32_t>(i), bounds);
+            size_[i] = size_of(bounds);
         }
     };
     if (tasks) tasks->for_each(groups_.count(), groups_per_task, fill);
     else fill(0, groups_.count(), 0);
+    size_sum_ = 0;
+    for (float size : size_) size_sum_ += size;
     raise_bounds();
 }
 

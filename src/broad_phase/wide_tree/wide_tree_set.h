@@ -13,12 +13,22 @@
 
 namespace lendulet {
 
+// The sum of its edge lengths, by which the wear of groups is told; 0 of no boxes.
+inline float size_of(const Bounds6& b) {
+    float size = (b.at[3] - b.at[0]) + (b.at[4] - b.at[1]) + (b.at[5] - b.at[2]);
+    return size > 0 ? size : 0;
+}
+
 class WideTreeSet {
 public:
     WideTreeSet(const Memory* memory, const WideTreeKernels& kernels);
 
     // Replaces all boxes. `tasks` may be null; it never changes the result.
     void build(const BroadBox* boxes, int count, TaskPool* tasks);
+    // Replaces all boxes by as many that are mostly near where those of the same place were, and leaves each in its
+    // lane. False, with nothing of use left, where the set has to be built instead: groups would be too large, or some
+    // have lost or won boxes.
+    bool refill(const BroadBox* boxes, int count, TaskPool* tasks);
     WideTreeView view() const;
     const Array<BroadBox>& unbounded() const { return unbounded_; }
     int count() const { return count_; }
@@ -55,11 +65,13 @@ public:
     // True where a build now saves more than it costs, as far as can be told from the work of the changes since the
     // last.
     bool worn(int queries);
+    static constexpr double most_growth = 1.25;  // of the sizes of all groups together
     int loose_lanes() const { return (groups_.count() - built_groups_ - 1) * group_lanes + loose_used_; }
 
 private:
     static constexpr uint32_t beside = 1u << 31;  // in lane_of_: the rest counts in the list of unbounded boxes
 
+    void fill_groups(const BroadBox* boxes, TaskPool* tasks);
     void plan_levels(int first_cleared);
     void set_bounds(int level, uint32_t child, const Bounds6& bounds);
     Bounds6 bounds_at(int level, uint32_t child) const;
@@ -81,12 +93,14 @@ private:
     Array<uint32_t> unbounded_place_;
     WideTreeOrder order_;
 
+    Array<float> size_;                     // of each group, see size_of
+    double size_sum_ = 0, built_size_ = 0;  // now, and when the set was built
+    bool shuffled_ = false;                 // boxes have come or gone since
+
     // What changes need; made by the first after a build.
     bool mapped_ = false;
-    Array<uint32_t> lane_of_;  // of each place
-    Array<Bounds6> home_;      // of each group, what its boxes stay in
-    Array<float> size_;        // of each group, the sum of its edge lengths
-    double size_sum_ = 0, built_size_ = 0;
+    Array<uint32_t> lane_of_;       // of each place
+    Array<Bounds6> home_;           // of each group, what its boxes stay in
     int built_groups_ = 0;          // the others are loose
     int loose_used_ = group_lanes;  // lanes of the last loose group
     int64_t wear_ = 0;
