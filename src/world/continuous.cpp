@@ -189,6 +189,22 @@ void suspect_swept(WorldData& world, uint32_t kinematic, const BodyPath& path, A
     }
 }
 
+// Whether a dynamic body stayed within its depth, as most do: seen without its exact path. Where it turned by less than
+// 2 pi / 3 and its spin is slow, the angle of that path is the one between both ends, at most 2 tan of its half.
+bool stayed(const WorldData& world, uint32_t body, float dt) {
+    const BodyInfo& info = world.bodies.info[body];
+    if (info.type != BodyType::dynamic) return false;
+    const size_t place = place_of(world, body);
+    const Pose &start = world.continuous.start[place], &end = world.bodies.pose[body];
+    const float* before = world.solver_bodies.start[place + reserved_bodies].w;
+    Quat turn = end.orientation * conjugate(start.orientation);
+    float cosine = absolute(turn.w), sine = length(Vec3{turn.x, turn.y, turn.z});
+    float spin = length(Vec3{before[0], before[1], before[2]}) +
+                 length(world.bodies.momenta[body].L) * max_component(world.bodies.mass[body].inverse_inertia);
+    if (!(cosine > 0.5f && 0.5f * dt * spin < 1.0f)) return false;
+    return 1.001f * (length(end.position - start.position) + 2.0f * sine / cosine * info.radius) <= info.depth;
+}
+
 void find_suspects(WorldData& world, float dt) {
     ContinuousData& c = world.continuous;
     c.suspects.clear();
@@ -198,6 +214,7 @@ void find_suspects(WorldData& world, float dt) {
     for (uint32_t body : world.awake) {
         BodyInfo& info = world.bodies.info[body];
         info.stopped = false;
+        if (stayed(world, body, dt)) continue;
         BodyPath path = path_of(world, body, dt);
         if (info.contained || !(reach_of(path, info.radius) > info.depth)) continue;
         if (info.type == BodyType::kinematic) suspect_swept(world, body, path, c.near[0]);

@@ -369,11 +369,8 @@ namespace {
 
 // What static and kinematic bodies' sides say may have changed.
 void renew_sides(WorldData& world) {
-    for (size_t i = 0; i < world.active_joints.size(); ++i) {
-        JointRecord& r = world.joint_records[i];
-        if (r.body_a == static_body || r.body_b == static_body)
-            put_sides(world, world.joints.info[world.active_joints[i]], r);
-    }
+    for (uint32_t i : world.fixed_joints)
+        put_sides(world, world.joints.info[world.active_joints[i]], world.joint_records[i]);
 }
 
 // Awake joints by class of substeps, stably.
@@ -435,6 +432,10 @@ JointReuse pack_joints(WorldData& world, float h) {
             world.joint_records[static_cast<size_t>(i)] = r;
         }
     });
+    world.fixed_joints.clear();
+    for (uint32_t i = 0; i < world.joint_records.size(); ++i)
+        if (world.joint_records[i].body_a == static_body || world.joint_records[i].body_b == static_body)
+            world.fixed_joints.push_back(i);
     world.joint_bodies.clear();
     world.joint_bodies.append(world.awake.data(), world.awake.size());
     for (int c = 0; c < substep_classes; ++c) world.joint_bodies_ends[c] = world.parts[c].bodies.end;

@@ -127,8 +127,8 @@ void tie_other_joints(WorldData& world) {
     if (world.active.empty() && world.joint_groups.empty()) return;
     auto mark = [&](uint32_t slot, uint32_t other) {
         if (loads[slot].step != world.steps + 1) return;
-        loads[root(loads, slot)].tied |= !loads[slot].in_group ||
-                  (world.bodies.info[other].type == BodyType::kinematic && moves(world, other));
+        loads[root(loads, slot)].tied |=
+            !loads[slot].in_group || (world.bodies.info[other].type == BodyType::kinematic && moves(world, other));
     };
     world.joints.for_each_link([&](uint32_t a, uint32_t b) { mark(a, b), mark(b, a); });
 }

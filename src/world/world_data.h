@@ -108,9 +108,10 @@ struct WorldData {
     // Joints that are solved, kept while they and the awake bodies stay the same.
     Array<uint32_t> active_joints;  // slots, by class of substeps and then in creation order
     Array<JointRecord> joint_records;
-    Array<uint32_t> joint_bodies;                // the awake bodies that the records name, ...
+    Array<uint32_t> fixed_joints;                 // records with a side on a body that is not packed
+    Array<uint32_t> joint_bodies;                 // the awake bodies that the records name, ...
     int joint_bodies_ends[substep_classes] = {};  // ... and where their classes end among the packed ones
-    bool joints_changed = true;                  // a joint came, went or was set
+    bool joints_changed = true;                   // a joint came, went or was set
 
     // Groups of jointed bodies that need more substeps, with their bodies one after the other.
     Array<JointGroupLoad> joint_groups;
