@@ -74,7 +74,7 @@ struct alignas(64) BodyBlock {
     Lanes start_v[3], start_w[3];
     Lanes linear_loss, angular_loss, anisotropy, free, joints;
     Lanes L[3];
-    Lanes v_ref[3], w_ref[3];        // velocities as the running pass of constraints found them
+    Lanes v_ref[3], w_ref[3];  // velocities as the running pass of constraints found them
     // What constraints added since the last kick: the next substep's warm start. Of bodies with joints dw is angular
     // momentum.
     Lanes dv[3], dw[3];

@@ -151,7 +151,7 @@ LENDULET_FORCE_INLINE JointMode<F> joint_mode(F joints) {
 }
 
 // Leaves dw/dt = I^-1 (L x w), the change of w at constant L, where joints find it with the state that they load
-// anyway.
+// anyway. Bodies that turn about a fixed axis have none, and the last drift has left zeros there.
 template <int W>
 LENDULET_FORCE_INLINE void store_gyro(SolverBodies& bodies, const int32_t* index, const SymMat3T<Wide<float, W>>& I,
                                       Vec3T<Wide<float, W>> L, Vec3T<Wide<float, W>> w) {
@@ -204,7 +204,9 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int
             Vec3T<F> more_L = scale * dw;
             dw = select(mode.jointed > zero, I * more_L, dw);
             more_L = select(mode.jointed > zero, more_L, zero_vector<F>());
-            store_gyro<W>(bodies, c.index, I, L + more_L, start_w + (x.w + dw));
+            auto tumbles = y.get(b.anisotropy) > splat<F>(1.0f);
+            if (mask_bits(tumbles) != 0)
+                store_gyro<W>(bodies, c.index, I, select(tumbles, L + more_L, zero_vector<F>()), start_w + (x.w + dw));
         }
         y.put(b.L, L);
         y.put(b.v_ref, x.v);

@@ -343,7 +343,7 @@ JointImpulses joint_impulses(const WorldData& world, uint32_t slot) {
     i.flags = r.flags;
     i.impulse = {r.impulse[0], r.impulse[1], r.impulse[2]};
     i.angular_impulse = {r.angular_impulse[0], r.angular_impulse[1], r.angular_impulse[2]};
-    i.h = world.last_h * substep_share(world, world.joints.record[slot]);
+    i.h = world.joints_h * substep_share(world, world.joints.record[slot]);
     return i;
 }
 
@@ -378,11 +378,8 @@ namespace {
 
 // What static and kinematic bodies' sides say may have changed.
 void renew_sides(WorldData& world) {
-    for (size_t i = 0; i < world.active_joints.size(); ++i) {
-        JointRecord& r = world.joint_records[i];
-        if (r.body_a == static_body || r.body_b == static_body)
-            put_sides(world, world.joints.info[world.active_joints[i]], r);
-    }
+    for (uint32_t i : world.fixed_joints)
+        put_sides(world, world.joints.info[world.active_joints[i]], world.joint_records[i]);
 }
 
 // Awake joints by class of substeps, stably.
@@ -424,7 +421,7 @@ bool same_bodies(const WorldData& world) {
 JointReuse pack_joints(WorldData& world, float h) {
     JointStore& joints = world.joints;
     if (joints.count() == 0 && world.active_joints.empty()) return {};
-    JointReuse reuse{!world.joints_changed && same_bodies(world), world.last_h > 0.0f ? h / world.last_h : 0.0f};
+    JointReuse reuse{!world.joints_changed && same_bodies(world), world.joints_h > 0.0f ? h / world.joints_h : 0.0f};
     if (reuse.same) {
         renew_sides(world);
         return reuse;
@@ -440,10 +437,14 @@ JointReuse pack_joints(WorldData& world, float h) {
             r.type = class_of(j);
             put_bounds(r, j);
             const JointImpulses& last = joints.impulses[slot];
-            put_impulses(r, last, last.h > 0.0f ? world.last_h * substep_share(world, i) / last.h : 0.0f);
+            put_impulses(r, last, last.h > 0.0f ? world.joints_h * substep_share(world, i) / last.h : 0.0f);
             world.joint_records[static_cast<size_t>(i)] = r;
         }
     });
+    world.fixed_joints.clear();
+    for (uint32_t i = 0; i < world.joint_records.size(); ++i)
+        if (world.joint_records[i].body_a == static_body || world.joint_records[i].body_b == static_body)
+            world.fixed_joints.push_back(i);
     world.joint_bodies.clear();
     world.joint_bodies.append(world.awake.data(), world.awake.size());
     for (int c = 0; c < substep_classes; ++c) world.joint_bodies_ends[c] = world.parts[c].bodies.end;

@@ -39,9 +39,8 @@ void prepare_solvers(WorldData& world, float dt) {
         ContactList contacts{records, world.active.data() + part.first_contact, part.contact_count, dt};
         world.solvers[c].prepare(world.tasks, world.solver_bodies, records, world.active.data() + part.first_contact,
                                  part.contact_count);
-        world.solvers[c].prepare_joints(world.tasks, world.solver_bodies,
-                                        world.joint_records.data() + part.first_joint, part.joint_count, contacts,
-                                        reuse);
+        world.solvers[c].prepare_joints(world.tasks, world.solver_bodies, world.joint_records.data() + part.first_joint,
+                                        part.joint_count, contacts, reuse);
     }
 }
 
@@ -106,10 +105,11 @@ void finish_step(WorldData& world, float dt) {
     }
     s.joints = world.joints.count();
     s.bytes_per_body = BodyStore::bytes_per_body() + sizeof(BodyState) + sizeof(BodyInertia) + sizeof(BodyStart) +
-                       sizeof(BodyMotion) + sizeof(BodyBlock) / block_bodies;
+                       sizeof(BodyMotion) + sizeof(BodyPlace) + sizeof(BodyBlock) / block_bodies;
     s.bytes_per_manifold = sizeof(ContactRecord) + sizeof(FoundSeparations) + sizeof(ColliderPair) +
                            sizeof(ListedPair) + sizeof(PairCache) + sizeof(KeptPose) +
                            (world.active.empty() ? 0 : row_bytes / world.active.size());
+    world.joints_h = world.last_h;
     world.time += dt;
     ++world.steps;
     world.query_scene.all_moved();

@@ -127,8 +127,8 @@ void tie_other_joints(WorldData& world) {
     if (world.active.empty() && world.joint_groups.empty()) return;
     auto mark = [&](uint32_t slot, uint32_t other) {
         if (loads[slot].step != world.steps + 1) return;
-        loads[root(loads, slot)].tied |= !loads[slot].in_group ||
-                  (world.bodies.info[other].type == BodyType::kinematic && moves(world, other));
+        loads[root(loads, slot)].tied |=
+            !loads[slot].in_group || (world.bodies.info[other].type == BodyType::kinematic && moves(world, other));
     };
     for (uint32_t joint : world.movers.joints) {
         const JointInfo& j = world.joints.info[joint];

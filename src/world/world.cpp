@@ -87,6 +87,7 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       overlaps(&memory),
       active_joints(&memory),
       joint_records(&memory),
+      fixed_joints(&memory),
       joint_bodies(&memory),
       joint_groups(&memory),
       jointed_bodies(&memory),

@@ -128,9 +128,10 @@ struct WorldData {
     // Joints that are solved, kept while they and the awake bodies stay the same.
     Array<uint32_t> active_joints;  // slots, by class of substeps and then in creation order
     Array<JointRecord> joint_records;
-    Array<uint32_t> joint_bodies;                // the awake bodies that the records name, ...
+    Array<uint32_t> fixed_joints;                 // records with a side on a body that is not packed
+    Array<uint32_t> joint_bodies;                 // the awake bodies that the records name, ...
     int joint_bodies_ends[substep_classes] = {};  // ... and where their classes end among the packed ones
-    bool joints_changed = true;                  // a joint came, went or was set
+    bool joints_changed = true;                   // a joint came, went or was set
 
     // Groups of jointed bodies that need more substeps, with their bodies one after the other.
     Array<JointGroupLoad> joint_groups;
@@ -150,7 +151,8 @@ struct WorldData {
     Array<BodyPair> touched_sleepers;  // (who touches, sleeping body)
     Array<uint32_t> waking;
 
-    float last_h = 0.0f;  // substep that the impulses of listed pairs belong to
+    float last_h = 0.0f;    // substep that the impulses of listed pairs belong to, s
+    float joints_h = 0.0f;  // the same of the records of joints
     bool in_step = false;
     double time = 0.0;
     uint64_t steps = 0;

@@ -173,6 +173,23 @@ void prepare_joints(const JointGroup& g, const SolverBodies& bodies, float scale
     for (int i = begin; i < end; ++i) prepare_joint<W, C>(rows[i], frames[i], g, bodies, scale);
 }
 
+// What store_joints() writes, for the full lanes of a block that has empty ones.
+template <int W, JointClass C>
+void store_lanes(const Wide<float, W> (&quads)[5][4], const uint32_t* order, int count, JointRecord* records) {
+    using S = JointShape<C>;
+    constexpr int places[5] = {joint_linear, joint_angular, joint_drive, joint_impulse, joint_angular_impulse};
+    constexpr bool used[5] = {true, S::angular > 0 || S::bounded > 1, S::driven, true, (S::directions > 0)};
+    for (int q = 0; q < 5; ++q) {
+        if (!used[q]) continue;
+        float lanes[4][W];
+        for (int i = 0; i < 4; ++i) store_wide(lanes[i], quads[q][i]);
+        for (int l = 0; l < count; ++l) {
+            float* to = floats_of(records + order[l]) + 4 * places[q];
+            for (int i = 0; i < 4; ++i) to[i] = lanes[i][l];
+        }
+    }
+}
+
 // The last impulses of a split joint stand for half a substep: what is reported is twice as much.
 template <int W, JointClass C>
 void store_joints(const JointGroup& g, JointRecord* records, int begin, int end) {
@@ -195,14 +212,13 @@ void store_joints(const JointGroup& g, JointRecord* records, int begin, int end)
         linear = whole * linear, angular = whole * angular;
         quads[3][0] = linear.x, quads[3][1] = linear.y, quads[3][2] = linear.z, quads[3][3] = zero;
         quads[4][0] = angular.x, quads[4][1] = angular.y, quads[4][2] = angular.z, quads[4][3] = zero;
-        int32_t index[W];
-        for (int l = 0; l < W; ++l)  // empty lanes write what the last full one does
-            index[l] = static_cast<int32_t>(g.order[b * W + l < g.count ? b * W + l : g.count - 1]);
         int last = g.count - b * W;
-        if (last < W)
-            for (auto& quad : quads)
-                for (F& x : quad)
-                    for (int l = last; l < W; ++l) set_lane(x, l, lane(x, last - 1));
+        if (last < W) {
+            store_lanes<W, C>(quads, g.order + b * W, last, records);
+            continue;
+        }
+        int32_t index[W];
+        for (int l = 0; l < W; ++l) index[l] = static_cast<int32_t>(g.order[b * W + l]);
         float* base = floats_of(records);
         scatter4<W>(base, index, stride, 4 * joint_linear, quads[0]);
         if (S::angular > 0 || S::bounded > 1) scatter4<W>(base, index, stride, 4 * joint_angular, quads[1]);

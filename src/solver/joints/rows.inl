@@ -167,9 +167,9 @@ LENDULET_FORCE_INLINE JointGeometry<W, C> find_geometry(const JointRow<W, C>& c,
         error = o.gap - o.coordinate[0] * o.direction[2];
         o.ra = o.ra + (o.gap - error);
     }
-    // The shared point is nearer to the lighter body's anchor, and at it where the other one cannot be moved: an arm that
-    // a gap has turned away from a spinning body's axis would change its spin. But shares are no longer than the arms:
-    // torn joints must not get endless levers.
+    // The shared point is nearer to the lighter body's anchor, and at it where the other one cannot be moved: an arm
+    // that a gap has turned away from a spinning body's axis would change its spin. But shares are no longer than the
+    // arms: torn joints must not get endless levers.
     F arms = dot(o.ra, o.ra) + dot(o.rb, o.rb), size = dot(error, error), most = splat<F>(1.0f);
     auto torn = size > arms;
     if (mask_bits(torn) != 0) [[unlikely]]

@@ -247,7 +247,7 @@ void apply(WorldData& world, const SavedState& state) {
     world.colliders.slots.set_free_list(state.collider_slots.free_list, state.collider_slots.capacity);
     world.joints.slots.set_free_list(state.joint_slots.free_list, state.joint_slots.capacity);
     world.config.gravity = state.gravity;
-    world.last_h = state.last_h;
+    world.last_h = world.joints_h = state.last_h;
     world.time = state.time;
     world.steps = state.steps;
     apply_bodies(world, state);
