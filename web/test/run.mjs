@@ -1,5 +1,5 @@
 // Tests of the page in a real browser: node test/run.mjs FOLDER [IMAGES [WORDS]]
-// FOLDER: the built page. IMAGES: where pictures are written to; without it, or where it is "-", they are only looked at.
+// FOLDER: the built page. IMAGES: where pictures are written to; "-" or none: they are only looked at.
 // WORDS: only checks whose names contain them.
 // CHROMIUM in the environment names another browser than /usr/bin/chromium.
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
@@ -34,7 +34,7 @@ async function open(options = {}, address = "?shadows=0") {
         if (!/^(http:\/\/127\.0\.0\.1:|data:|blob:)/.test(request.url())) problems.push(`asks for ${request.url()}`);
     });
     await page.goto(server.url + address);
-    await page.waitForFunction(() => window.lendulet !== undefined, null, { timeout: 60000 });
+    await page.waitForFunction(() => window.lendulet !== undefined, null, { polling: 100, timeout: 90000 });
     return page;
 }
 
