@@ -33,6 +33,7 @@ export class App {
     private numbers: BigUint64Array = new BigUint64Array(); // of the bodies by index
     private dirty = true;    // everything must be placed and painted anew
     private drawnStep = -1;  // state that was drawn last
+    private drawnShare = 0;
     private lastFrame = performance.now();
     private lastFigures = 0;
     private lastLink = 0;
@@ -84,7 +85,7 @@ export class App {
         element<HTMLInputElement>("size").value = size ?? String(info?.size ?? "");
         document.title = `${titleOf(name)} – Lendület`;
         this.list.mark(name);
-        this.stage.render(); // the camera's shape before it is placed
+        this.stage.update(); // the camera's shape before it is placed
         if (link.view) {
             this.lookAtAll();
             this.stage.camera.position.fromArray(link.view);
@@ -103,6 +104,7 @@ export class App {
     }
     lookAtAll(): void {
         this.stage.frame(this.bodies.measure(this.player.picture.now));
+        this.dirty = true;
     }
 
     private rebuild(otherScene: boolean): void {
@@ -218,6 +220,10 @@ export class App {
         const { before, now, share } = this.player.picture;
         const moment = this.player.moment, step = moment ? -2 - moment.step : this.player.world.stepCount;
         const fresh = this.dirty || step !== this.drawnStep;
+        const moved = this.stage.update();
+        // What stands still is not drawn again.
+        if (!fresh && !moved && share === this.drawnShare && !this.pointer.active) return;
+        this.drawnShare = share;
         this.bodies.place(before, now, share, this.dirty);
         if (fresh) {
             if (this.dirty || this.colours !== "body")

@@ -65,6 +65,10 @@ export class Pointer {
         if (ray.intersectPlane(this.plane, this.target)) this.player.world.drag(vector(this.target));
     }
     private grabbing = false;
+    // Whether the line of the grip is drawn, or was a moment ago.
+    get active(): boolean {
+        return this.grabbing || this.grip.line.visible;
+    }
     private lift(event: PointerEvent): void {
         const still = this.down && Math.hypot(event.clientX - this.down.x, event.clientY - this.down.y) <= clickReach;
         if (still && !this.grabbing && event.button === 0 && !this.player.moment) this.pick(this.down!.body);

@@ -15,7 +15,9 @@ export class Stage {
     private size = [0, 0];
 
     constructor(readonly canvas: HTMLCanvasElement, shadowSize: number) {
-        this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+        // Without shadows the machine draws in software, most likely: smooth edges are left out as well.
+        const antialias = shadowSize > 0;
+        this.renderer = new THREE.WebGLRenderer({ canvas, antialias, powerPreference: "high-performance" });
         this.renderer.shadowMap.enabled = shadowSize > 0;
         this.renderer.shadowMap.type = THREE.PCFShadowMap;
         this.renderer.toneMapping = THREE.NeutralToneMapping;
@@ -95,17 +97,21 @@ export class Stage {
         this.sun.target.updateMatrixWorld();
     }
 
-    render(): void {
+    // Brings the camera up to date; true where the picture is another one than before.
+    update(): boolean {
         const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
         const ratio = Math.min(window.devicePixelRatio, 2);
-        if (width !== this.size[0] || height !== this.size[1] || ratio !== this.renderer.getPixelRatio()) {
+        const resized = width !== this.size[0] || height !== this.size[1] || ratio !== this.renderer.getPixelRatio();
+        if (resized) {
             this.size = [width, height];
             this.renderer.setPixelRatio(ratio);
             this.renderer.setSize(width, height, false);
             this.camera.aspect = width / Math.max(height, 1);
             this.camera.updateProjectionMatrix();
         }
-        this.controls.update();
+        return this.controls.update() || resized;
+    }
+    render(): void {
         this.renderer.render(this.scene, this.camera);
     }
 
