@@ -33,10 +33,12 @@ private:
 
 void prepare_solvers(WorldData& world) {
     const ContactRecord* records = world.records.data();
-    for (int c = 0; c < substep_classes; ++c) {
+    for (int c = substep_classes - 1; c >= 0; --c) {
         const SolverPart& part = world.parts[c];
         world.solvers[c].prepare(world.tasks, world.solver_bodies, records, world.active.data() + part.first_contact,
                                  part.contact_count);
+        // Islands go up by any number of classes and come down one by one, also long after all has come to rest.
+        if (c > 0 && part.contact_count > 0) world.solvers[c - 1].make_room(world.solvers[c]);
     }
     world.solvers[0].prepare_joints(world.tasks, world.solver_bodies, world.joint_records.data(),
                                     world.joint_records.count(),

@@ -82,9 +82,13 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       awake(&memory),
       solver_bodies(&memory),
       island_loads(&memory),
+      first_loads(&memory),
       parts{},
-      solvers{
-          {&memory, settings.width}, {&memory, settings.width}, {&memory, settings.width}, {&memory, settings.width}},
+      solvers{{&memory, settings.width},
+              {&memory, settings.width},
+              {&memory, settings.width},
+              {&memory, settings.width},
+              {&memory, settings.width}},
       island_parent(&memory),
       island_still(&memory) {}
 

@@ -34,8 +34,8 @@ struct NarrowScratch {
     float max_penetration;
 };
 
-// Islands take 1, 2, 4 or 8 times the substeps of the setting.
-inline constexpr int substep_classes = 4;
+// Islands take 1, 2, 4, 8 or 16 times the substeps of the setting.
+inline constexpr int substep_classes = 5;
 
 // What a body's island carries, see substeps.cpp; sums are with the root.
 struct IslandLoad {
@@ -48,6 +48,14 @@ struct IslandLoad {
     uint8_t waited;           // steps since when fewer substeps would do
     uint8_t substeps;         // class
     bool tied, decided;       // tied: to joints or to a kinematic body in motion, which take the setting's substeps
+    bool held;                // this body rests on a contact that carries already
+    float carried;            // mass of this body and of what new contacts put on it, kg
+};
+
+// A new contact on which `upper` rests; `lower` is no_slot where that is static. See first_loads.cpp.
+struct FirstLoad {
+    float height;  // times gravity
+    uint32_t upper, lower, record;
 };
 
 // Stretches of the packed bodies and of the active contacts that are solved together.
@@ -96,6 +104,7 @@ struct WorldData {
     Array<uint32_t> awake;  // slots, by class of substeps and then in order of slots
     SolverBodies solver_bodies;
     Array<IslandLoad> island_loads;  // by body slot
+    Array<FirstLoad> first_loads;    // of this step
     SolverPart parts[substep_classes];
     Solver solvers[substep_classes];  // joints are solved by the first
     Array<uint32_t> island_parent;    // union-find over body slots
@@ -117,6 +126,10 @@ void match_pairs(WorldData& world);
 void find_contacts(WorldData& world, float dt);
 void update_islands(WorldData& world, float dt);
 void choose_substeps(WorldData& world, float dt);
+// Takes a contact between bodies at rest that has carried nothing, if its upper body rests on it. A may be static.
+void offer_first_load(WorldData& world, uint32_t record, uint32_t a, uint32_t b, bool both);
+// Sets the impulses of what was offered; `weight`: what a substep of gravity gives to 1 kg, N s.
+void guess_first_loads(WorldData& world, float weight);
 void pack_bodies(WorldData& world, float dt);
 void pack_contacts(WorldData& world);
 void pack_joints(WorldData& world, float h);
