@@ -42,7 +42,7 @@ struct TaskHook {
 // Every setting of a world; WorldBuilder fills it in.
 struct WorldConfig {
     Vec3 gravity{0.0f, -9.81f, 0.0f};  // m/s^2
-    int solver_steps = 8;  // substeps per step, 1 .. 64; small islands under heavy load take up to 8 times as many
+    int solver_steps = 8;  // substeps per step, 1 .. 64; small islands under heavy load take up to 16 times as many
     float rigid_separation_speed = 3.0f;   // m/s: fastest that overlap between two rigid bodies is undone
     float static_separation_speed = 3.0f;  // m/s: the same against static and kinematic bodies
     float friction = 0.5f;                 // default static and dynamic coefficient

@@ -33,6 +33,13 @@ public:
     // The next constraint, between two bodies of which at least one is moved.
     void add(int32_t a, bool moved_a, int32_t b, bool moved_b, int constraint_class);
     void end();
+    // See ColourSchedule.
+    void make_room(const ColourSorter& other) {
+        used_moving_.reserve(other.used_moving_.size());
+        used_fixed_.reserve(other.used_fixed_.size());
+        keys_.reserve(keys_.size() + other.keys_.size());
+        counts_.reserve(other.counts_.size());
+    }
     // Calls group(colour, class, begin, count) for every group that is not empty, by colour, then class: its
     // constraints are to be found in [begin, begin + count) of what fill() writes.
     template <class Group>
@@ -73,6 +80,14 @@ struct ColourSchedule {
     void build(const ContactRecord* records, const uint32_t* list, int count, const SolverBodies& bodies,
                const SolverKernels& kernels, const SolverKernels& scalar_kernels);
     int colour_count() const { return colour_ends.count(); }
+    // So that it can hold what `other` holds as well without asking for memory; before build().
+    void make_room(const ColourSchedule& other) {
+        order.reserve(order.size() + other.order.size());
+        groups.reserve(groups.size() + other.groups.size());
+        colour_ends.reserve(colour_ends.size() + other.colour_ends.size());
+        rows.reserve(rows.size() + other.rows.size());
+        sorter_.make_room(other.sorter_);
+    }
 
 private:
     ColourSorter sorter_;

@@ -45,6 +45,11 @@ public:
 
     // Colours the manifolds that `list` names and packs them into rows.
     void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, const uint32_t* list, int count);
+    // So that contacts of `other` may become this one's without asking for memory; before prepare().
+    void make_room(const Solver& other) {
+        schedule_.make_room(other.schedule_);
+        bouncing_.reserve(bouncing_.size() + other.bouncing_.size());
+    }
     // Colours the joints and packs them; after prepare() and with the same contacts, in every step. `joints` must stay
     // until store_joints(), and until the next call where that one reuses them.
     void prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointRecord* joints, int count, ContactList contacts,

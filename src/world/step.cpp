@@ -34,13 +34,15 @@ private:
 void prepare_solvers(WorldData& world, float dt) {
     JointReuse reuse = pack_joints(world, dt / static_cast<float>(world.config.solver_steps));
     const ContactRecord* records = world.records.data();
-    for (int c = 0; c < substep_classes; ++c) {
+    for (int c = substep_classes - 1; c >= 0; --c) {
         const SolverPart& part = world.parts[c];
         ContactList contacts{records, world.active.data() + part.first_contact, part.contact_count, dt};
         world.solvers[c].prepare(world.tasks, world.solver_bodies, records, world.active.data() + part.first_contact,
                                  part.contact_count);
         world.solvers[c].prepare_joints(world.tasks, world.solver_bodies, world.joint_records.data() + part.first_joint,
                                         part.joint_count, contacts, reuse);
+        // Islands go up by any number of classes and come down one by one, also long after all has come to rest.
+        if (c > 0 && part.contact_count > 0) world.solvers[c - 1].make_room(world.solvers[c]);
     }
 }
 

@@ -1,7 +1,7 @@
 // Which islands take more substeps than the world's setting. A contact that carries R times the weight of its lighter
 // body sinks by 2 (leak / bias) R g h^2, and a column of size w and height H under it buckles for R (H / w)^2 g h^2 of
-// about w (docs/solver.md); both shrink with the square of the substep. Small islands that need it therefore take 2, 4
-// or 8 times as many substeps, and so do small groups of jointed bodies with loads or loops (joint_groups.cpp); large
+// about w (docs/solver.md); both shrink with the square of the substep. Small islands that need it therefore take 2, 4,
+// 8 or 16 times as many substeps, and so do small groups of jointed bodies with loads or loops (joint_groups.cpp); large
 // ones, where that would cost, those with other joints and those on bodies that are moved by hand keep to the setting.
 //
 // Reads this step's contacts with their warm-start impulses, which are in units of the world's substep. Leaves the
@@ -17,8 +17,9 @@ constexpr int most_contacts = 1024;       // of an island, times its multiple of
 constexpr float allowed_sinking = 1e-3f;  // of the size of the bodies
 constexpr float buckling_reserve = 1.7f;  // above the load at which a column of boxes was seen to buckle
 constexpr float resting_speed = 0.5f;     // m/s; what moves faster is no load but an impact
-constexpr float kept_reserve = 1.6f;  // a class is left only when fewer substeps would carry this many times the load
-constexpr int patience = 60;          // ... for so many steps: a column that has just stiffened springs up a little
+constexpr float kept_reserve = 1.6f;   // a class is left only when fewer substeps would carry this many times the load
+constexpr float first_reserve = 4.0f;  // of loads that are guessed: what is built at rest shall not begin by swinging
+constexpr int patience = 60;           // ... for so many steps: a column that has just stiffened springs up a little
 
 uint32_t root(Array<IslandLoad>& loads, uint32_t i) {
     while (loads[i].parent != i) {
@@ -47,7 +48,9 @@ void entry(WorldData& world, uint32_t slot) {
          0,
          false,
          false,
-         false};
+         false,
+         false,
+         world.bodies.mass[slot].mass * world.bodies.info[slot].gravity_factor};
 }
 
 void join(Array<IslandLoad>& loads, uint32_t a, uint32_t b) {
@@ -71,6 +74,30 @@ void join(Array<IslandLoad>& loads, uint32_t a, uint32_t b) {
 bool moves(const WorldData& world, uint32_t slot) {
     const BodyMomenta& m = world.bodies.momenta[slot];
     return length_squared(m.p) + length_squared(m.L) > 0.0f;
+}
+
+float impulse_of(const ContactRecord& r) {
+    return r.normal_impulse[0] + r.normal_impulse[1] + r.normal_impulse[2] + r.normal_impulse[3];
+}
+
+// Adds what a contact carries to its island's loads, unless its bodies are fast. `both` are moving ones.
+void count_load(WorldData& world, const ContactRecord& r, float weight, bool both, float reserve = 1.0f) {
+    const BodyStore& bodies = world.bodies;
+    auto a = static_cast<uint32_t>(r.body_a), b = static_cast<uint32_t>(r.body_b);
+    auto slow = [&](uint32_t slot) { return length_squared(bodies.velocity(slot)) < resting_speed * resting_speed; };
+    float lightest = bodies.mass[b].inverse_mass, radius = bodies.info[b].radius, impulse = impulse_of(r);
+    if (both) {
+        lightest = maximum(lightest, bodies.mass[a].inverse_mass);
+        radius = minimum(radius, bodies.info[a].radius);
+    }
+    // The upper body of a contact that carries is held by it.
+    bool a_above = dot(Vec3{r.normal[0], r.normal[1], r.normal[2]}, world.config.gravity) > 0.0f;
+    if (both || !a_above) world.island_loads[a_above ? a : b].held = true;
+    if (!(impulse * lightest > weight) || !slow(b) || (both && !slow(a))) return;
+    float ratio = reserve * impulse * lightest / weight, size = 1.15f * radius;  // a cube's edge from its diagonal
+    IslandLoad& l = world.island_loads[root(world.island_loads, b)];
+    l.sinking = maximum(l.sinking, ratio / size);
+    l.buckling = maximum(l.buckling, ratio / (size * size * size));
 }
 
 // The least class whose substeps carry `load` times the island's loads.
@@ -144,8 +171,8 @@ void choose_substeps(WorldData& world, float dt) {
     loads.resize(bodies.slots.capacity());
     const float gravity = length(world.config.gravity);
     const float weight = gravity * dt / static_cast<float>(world.config.solver_steps);
-    auto slow = [&](uint32_t slot) { return length_squared(bodies.velocity(slot)) < resting_speed * resting_speed; };
     world.active.clear();
+    world.first_loads.clear();
     for (uint32_t i : world.touching) {
         ContactRecord& r = world.records[i];
         const ColliderPair& p = world.pairs.pairs[r.pair];
@@ -166,17 +193,13 @@ void choose_substeps(WorldData& world, float dt) {
         IslandLoad& l = loads[root(loads, b)];
         ++l.contacts;
         l.tied |= info_a.type == BodyType::kinematic && moves(world, a);
-        float impulse = r.normal_impulse[0] + r.normal_impulse[1] + r.normal_impulse[2] + r.normal_impulse[3];
-        float lightest = bodies.mass[b].inverse_mass, radius = info_b.radius;
-        if (both) {
-            lightest = maximum(lightest, bodies.mass[a].inverse_mass);
-            radius = minimum(radius, info_a.radius);
-        }
-        if (impulse * lightest > weight && slow(b) && (!both || slow(a))) {
-            float ratio = impulse * lightest / weight, size = 1.15f * radius;  // a cube's edge from its diagonal
-            l.sinking = maximum(l.sinking, ratio / size);
-            l.buckling = maximum(l.buckling, ratio / (size * size * size));
-        }
+        if (impulse_of(r) > 0.0f) count_load(world, r, weight, both);
+        else if (!moves(world, b) && !moves(world, a)) offer_first_load(world, i, a, b, both);
+    }
+    if (!world.first_loads.empty()) {
+        guess_first_loads(world, weight);
+        for (const FirstLoad& f : world.first_loads)
+            count_load(world, world.records[f.record], weight, f.lower != no_slot, first_reserve);
     }
     add_joint_groups(world);
     tie_other_joints(world);

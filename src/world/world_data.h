@@ -35,8 +35,8 @@ struct NarrowScratch {
     float max_penetration;
 };
 
-// Islands take 1, 2, 4 or 8 times the substeps of the setting.
-inline constexpr int substep_classes = 4;
+// Islands take 1, 2, 4, 8 or 16 times the substeps of the setting.
+inline constexpr int substep_classes = 5;
 
 // What a body's island carries, see substeps.cpp; sums are with the root.
 struct IslandLoad {
@@ -51,6 +51,14 @@ struct IslandLoad {
     uint8_t substeps;         // class
     bool tied, decided;       // tied: to other joints or a kinematic body in motion, which take the setting's substeps
     bool in_group;            // of the body itself: in one of WorldData::joint_groups
+    bool held;                // this body rests on a contact that carries already
+    float carried;            // mass of this body and of what new contacts put on it, kg
+};
+
+// A new contact on which `upper` rests; `lower` is no_slot where that is static. See first_loads.cpp.
+struct FirstLoad {
+    float height;  // times gravity
+    uint32_t upper, lower, record;
 };
 
 // A body with joints, by slot, and the one that it was reached from: an index in its group, or -1.
@@ -144,6 +152,7 @@ struct WorldData {
     Array<uint32_t> awake;  // slots, by class of substeps and then in order of slots
     SolverBodies solver_bodies;
     Array<IslandLoad> island_loads;  // by body slot
+    Array<FirstLoad> first_loads;    // of this step
     SolverPart parts[substep_classes];
     Solver solvers[substep_classes];
     Array<uint32_t> island_parent;  // union-find over body slots
@@ -170,6 +179,10 @@ void find_contacts(WorldData& world, float dt);
 void update_islands(WorldData& world, float dt);
 void find_joint_groups(WorldData& world);
 void choose_substeps(WorldData& world, float dt);
+// Takes a contact between bodies at rest that has carried nothing, if its upper body rests on it. A may be static.
+void offer_first_load(WorldData& world, uint32_t record, uint32_t a, uint32_t b, bool both);
+// Sets the impulses of what was offered; `weight`: what a substep of gravity gives to 1 kg, N s.
+void guess_first_loads(WorldData& world, float weight);
 void pack_bodies(WorldData& world, float dt);
 void pack_contacts(WorldData& world);
 // Returns what the solver may keep of the last step.

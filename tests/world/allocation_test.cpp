@@ -59,7 +59,7 @@ TEST_P(Allocation, SettledPileTakesNoMemory) {
     {
         World world = WorldBuilder{}.sleep(false).workers(GetParam()).allocator(counter.hook()).build().value();
         add_mixed_pile(world, 5);
-        run(world, 200);  // until the pile lies
+        run(world, 400);  // until the pile lies
         ASSERT_GT(world.statistics().contact_points, 100);
         ASSERT_GT(world.statistics().joints, 3);
         EXPECT_GT(counter.allocations.load(), 10);
@@ -70,7 +70,7 @@ TEST_P(Allocation, SettledPileTakesNoMemory) {
         }
         EXPECT_EQ(heap_calls.load(), heap) << "operator new was called in a step";
         EXPECT_EQ(counter.allocations.load(), hooked) << "the hook was asked for memory in a step";
-        EXPECT_EQ(world.step_count(), 260u);
+        EXPECT_EQ(world.step_count(), 460u);
         EXPECT_GT(counter.live_bytes.load(), 0);
     }
     EXPECT_EQ(counter.allocations.load(), counter.frees.load());

@@ -8,9 +8,14 @@ namespace {
 
 constexpr float width = 0.5f, height = 1.0f;
 
-// Whether a box of 1 kg is tipping after 8 s under this gravity and a horizontal force at `level` above the ground.
-bool tips(const Setting& s, Ground ground, Vec3 gravity, double force, float level) {
-    World world = s.world(gravity);
+// Whether a box of 1 kg on a slope, pushed horizontally at `level` above the ground, tips within 8 s. Slope and force
+// grow to what is asked over the first 2 s.
+struct Load {
+    double slope_deg, force;
+    float level;
+};
+bool tips(const Setting& s, Ground ground, Load load) {
+    World world = s.world();
     add_ground(world, s.frame, ground, 1.0f);
     BodyId box = add_body(world, s.frame,
                           {.shape = Box{{0.5f * width, 0.5f * height, 0.5f * width}},
@@ -18,12 +23,17 @@ bool tips(const Setting& s, Ground ground, Vec3 gravity, double force, float lev
                            .friction = 1.0f,
                            .mass = 1.0f});
     const Vec3d upright = to_double(world.get(box).rotation_matrix().y);
-    for (int i = 0, steps = s.steps(8.0); i < steps; ++i) {
+    const int growing = s.steps(2.0);
+    for (int i = 0, steps = s.steps(10.0); i < steps; ++i) {
+        double part = std::fmin(static_cast<double>(i) / growing, 1.0), slope = part * load.slope_deg * pi_d / 180.0;
+        world
+            .set_gravity(s.frame.direction({static_cast<float>(standard_gravity * std::sin(slope)),
+                                            static_cast<float>(-standard_gravity * std::cos(slope)), 0.0f}))
+            .value();
         RigidBodyRef body = world.get(box);
-        if (force > 0.0)
-            body.apply_force(s.frame.direction({static_cast<float>(force), 0.0f, 0.0f}),
-                             body.position() + rotate(body.orientation(), {0.0f, level - 0.5f * height, 0.0f}))
-                .value();
+        body.apply_force(s.frame.direction({static_cast<float>(part * load.force), 0.0f, 0.0f}),
+                         body.position() + rotate(body.orientation(), {0.0f, load.level - 0.5f * height, 0.0f}))
+            .value();
         advance(world, 1, s.dt());
         if (degrees(angle_between(to_double(world.get(box).rotation_matrix().y), upright)) > 5.0) return true;
     }
@@ -49,15 +59,14 @@ void tipping(const Setting& s, Figures& out) {
     const double exact_angle = degrees(std::atan2(width, height));
     const double exact_force = standard_gravity * static_cast<double>(width) / (2.0 * static_cast<double>(level));
     for (Ground ground : grounds) {
-        double found = bisect(exact_angle - 0.5, exact_angle + 0.5, 6, [&](double slope) {
-            double a = slope * pi_d / 180.0;
-            Vec3 gravity{static_cast<float>(standard_gravity * std::sin(a)),
-                         static_cast<float>(-standard_gravity * std::cos(a)), 0.0f};
-            return tips(s, ground, gravity, 0.0, 0.0f);
+        angle.add(bisect(exact_angle - 0.5, exact_angle + 0.5, 6,
+                         [&](double slope) {
+                             return tips(s, ground, {slope, 0.0, 0.5f * height});
+                         }),
+                  exact_angle);
+        double pushed = bisect(0.97, 1.03, 6, [&](double part) {
+            return tips(s, ground, {0.0, part * exact_force, level});
         });
-        angle.add(found, exact_angle);
-        double pushed =
-            bisect(0.97, 1.03, 6, [&](double part) { return tips(s, ground, down, part * exact_force, level); });
         force.add(pushed * exact_force, exact_force);
     }
 }
