@@ -217,7 +217,8 @@ LENDULET_FORCE_INLINE void solve_bounded(JointRow<W, C>& c, const JointGeometry<
     for (int i = 0; i < S::locked; ++i) more.locked[i] = zero, impulse[i] = c.impulse[i];
     for (int j = 0; j < S::bounded; ++j) {
         F speed = v[j], change = zero;
-        if (j == 1) speed = speed + r[1].passed * more.bounded[0];
+        if constexpr (S::bounded > 1)
+            if (j == 1) speed = speed + r[1].passed * more.bounded[0];
         if constexpr (S::driven) change = solve_drive<W, C, biased>(c, k, split, r[j].rate, o.coordinate[j], speed);
         change = change +
                  solve_limit<biased>(c.row[j], range[j], r[j].rate, c.leak, c.relaxation, speed + r[j].rate * change);
