@@ -105,19 +105,16 @@ struct JointPair {
 // Of one body: all but the velocities at the start of the step. The kick left its gyroscopic acceleration in the unused
 // places of its state and inertia.
 template <int W>
-LENDULET_FORCE_INLINE void load_joint_body(const SolverBodies& bodies, const int32_t* i,
+LENDULET_FORCE_INLINE void load_joint_body(const SolverBodies& bodies, const int32_t* place,
                                            WideVelocity<Wide<float, W>>& x, Vec3T<Wide<float, W>>& dp,
                                            QuatT<Wide<float, W>>& dq, SymMat3T<Wide<float, W>>& I,
                                            Vec3T<Wide<float, W>>& gyro) {
-    using F = Wide<float, W>;
-    F p[4], q[4], m[4], n[4];
-    x = load_velocity<W>(bodies.state.data(), i);
-    gather4<W>(floats_of(bodies.state.data()), i, 16, 8, p);
-    gather4<W>(floats_of(bodies.state.data()), i, 16, 12, q);
-    gather4<W>(floats_of(bodies.inertia.data()), i, 8, 0, m);
-    gather4<W>(floats_of(bodies.inertia.data()), i, 8, 4, n);
+    Wide<float, W> p[8], m[8];
+    x = load_velocity_at<W>(bodies.state.data(), place);
+    gather8<W>(floats_of(bodies.state.data()), place, sizeof(BodyState) / 32, 8, p);
+    gather8<W>(floats_of(bodies.inertia.data()), place, sizeof(BodyInertia) / 32, 0, m);
     dp = {p[0], p[1], p[2]};
-    dq = {q[0], q[1], q[2], q[3]};
-    I = {m[0], m[1], m[2], m[3], n[0], n[1]};
-    gyro = {n[2], n[3], p[3]};
+    dq = {p[4], p[5], p[6], p[7]};
+    I = {m[0], m[1], m[2], m[3], m[4], m[5]};
+    gyro = {m[6], m[7], p[3]};
 }

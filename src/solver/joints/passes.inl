@@ -217,7 +217,8 @@ LENDULET_FORCE_INLINE void solve_bounded(JointRow<W, C>& c, const JointGeometry<
     for (int i = 0; i < S::locked; ++i) more.locked[i] = zero, impulse[i] = c.impulse[i];
     for (int j = 0; j < S::bounded; ++j) {
         F speed = v[j], change = zero;
-        if (j == 1) speed = speed + r[1].passed * more.bounded[0];
+        if constexpr (S::bounded > 1)
+            if (j == 1) speed = speed + r[1].passed * more.bounded[0];
         if constexpr (S::driven) change = solve_drive<W, C, biased>(c, k, split, r[j].rate, o.coordinate[j], speed);
         change = change +
                  solve_limit<biased>(c.row[j], range[j], r[j].rate, c.leak, c.relaxation, speed + r[j].rate * change);
@@ -321,8 +322,8 @@ LENDULET_FORCE_INLINE void joint_pass(JointRow<W, C>& c, const JointGroup& g, So
     c.turn_b = c.turn_b + (cross(o.rb, linear) + angular);
     if constexpr (S::directions > 0) c.angular = c.angular + angular;
     if constexpr (S::slider) c.linear = c.linear + linear;
-    if (g.moved_a) store_velocity<W>(bodies.state.data(), c.a, pair.A);
-    if (g.moved_b) store_velocity<W>(bodies.state.data(), c.b, pair.B);
+    if (g.moved_a) store_velocity_at<W>(bodies.state.data(), c.a, pair.A);
+    if (g.moved_b) store_velocity_at<W>(bodies.state.data(), c.b, pair.B);
 }
 
 template <int W, JointClass C, bool biased>
@@ -337,15 +338,16 @@ void warm_start_joints(const JointGroup& g, SolverBodies& bodies, const JointCon
     auto* rows = reinterpret_cast<JointRow<W, C>*>(g.rows);
     for (int i = begin; i < end; ++i) {
         JointRow<W, C>& c = rows[i];
-        WideVelocity<F> A = load_velocity<W>(bodies.state.data(), c.a), B = load_velocity<W>(bodies.state.data(), c.b);
+        WideVelocity<F> A = load_velocity_at<W>(bodies.state.data(), c.a),
+                        B = load_velocity_at<W>(bodies.state.data(), c.b);
         Vec3T<F> linear;
         if constexpr (JointShape<C>::slider) linear = c.linear;
         else linear = {c.impulse[0], c.impulse[1], c.impulse[2]};
         A.v = A.v - A.inverse_mass * linear;
         B.v = B.v + B.inverse_mass * linear;
-        A.w = A.w - load_inverse_inertia<W>(bodies.inertia.data(), c.a) * c.turn_a;
-        B.w = B.w + load_inverse_inertia<W>(bodies.inertia.data(), c.b) * c.turn_b;
-        if (g.moved_a) store_velocity<W>(bodies.state.data(), c.a, A);
-        if (g.moved_b) store_velocity<W>(bodies.state.data(), c.b, B);
+        A.w = A.w - load_inverse_inertia_at<W>(bodies.inertia.data(), c.a) * c.turn_a;
+        B.w = B.w + load_inverse_inertia_at<W>(bodies.inertia.data(), c.b) * c.turn_b;
+        if (g.moved_a) store_velocity_at<W>(bodies.state.data(), c.a, A);
+        if (g.moved_b) store_velocity_at<W>(bodies.state.data(), c.b, B);
     }
 }

@@ -59,8 +59,8 @@ LENDULET_FORCE_INLINE void load_joint(JointRow<W, C>& c, JointFrames<W, C>& fram
         live[l] = first + l < g.count;
         index[l] = static_cast<int32_t>(g.order[live[l] ? first + l : first]);
         const JointRecord& r = records[index[l]];
-        c.a[l] = live[l] ? r.body_a : g.filler;
-        c.b[l] = live[l] ? r.body_b : g.filler;
+        c.a[l] = 8 * (live[l] ? r.body_a : g.filler);
+        c.b[l] = 8 * (live[l] ? r.body_b : g.filler);
         bool alone = (r.flags & joint_alone) != 0;
         set_lane(c.bias, l, alone ? 1.0f : joint_bias);
         set_lane(c.leak, l, alone ? 0.0f : joint_leak);
@@ -103,20 +103,23 @@ struct JointSide {
     QuatT<F> q;
 };
 template <int W>
-LENDULET_FORCE_INLINE JointSide<Wide<float, W>> load_side(const SolverBodies& bodies, const int32_t* index,
+LENDULET_FORCE_INLINE JointSide<Wide<float, W>> load_side(const SolverBodies& bodies, const int32_t* place,
                                                           Vec3T<Wide<float, W>> arm, bool moved) {
     using F = Wide<float, W>;
-    constexpr int motion_stride = sizeof(BodyMotion) / sizeof(float), place_stride = sizeof(BodyPlace) / sizeof(float);
-    F q[4], x[4], low[4];
-    gather4<W>(floats_of(bodies.motion.data()), index, motion_stride, 0, q);
-    gather4<W>(floats_of(bodies.place.data()), index, place_stride, 0, x);
-    gather4<W>(floats_of(bodies.place.data()), index, place_stride, 4, low);
-    WideVelocity<F> start = load_start<W>(bodies.start.data(), index);
-    JointSide<F> s{{x[0], x[1], x[2]}, {low[0], low[1], low[2]}, {}, start.v, start.w, {q[0], q[1], q[2], q[3]}};
+    F q[4], x[8], start[8];
+    gather4<W>(floats_of(bodies.motion.data()), place, sizeof(BodyMotion) / 32, 0, q);
+    gather8<W>(floats_of(bodies.place.data()), place, sizeof(BodyPlace) / 32, 0, x);
+    gather8<W>(floats_of(bodies.start.data()), place, sizeof(BodyStart) / 32, 0, start);
+    JointSide<F> s;
+    s.x = {x[0], x[1], x[2]};
+    s.x_low = {x[4], x[5], x[6]};
+    s.v = {start[0], start[1], start[2]};
+    s.w = {start[4], start[5], start[6]};
+    s.q = {q[0], q[1], q[2], q[3]};
     s.arm = rotate(s.q, arm);
     if (moved) return s;
     for (int l = 0; l < W; ++l) {
-        if (index[l] != static_body) continue;
+        if (place[l] != 8 * static_body) continue;
         set_lane(s.x.x, l, lane(arm.x, l)), set_lane(s.x.y, l, lane(arm.y, l)), set_lane(s.x.z, l, lane(arm.z, l));
         set_lane(s.arm.x, l, 0.0f), set_lane(s.arm.y, l, 0.0f), set_lane(s.arm.z, l, 0.0f);
     }
@@ -151,8 +154,8 @@ LENDULET_FORCE_INLINE void prepare_joint(JointRow<W, C>& c, const JointFrames<W,
         if constexpr (S::driven) c.motor = splat<F>(scale) * c.motor;
     }
     F a[4], b[4];
-    gather4<W>(floats_of(bodies.state.data()), c.a, sizeof(BodyState) / sizeof(float), 0, a);
-    gather4<W>(floats_of(bodies.state.data()), c.b, sizeof(BodyState) / sizeof(float), 0, b);
+    gather4<W>(floats_of(bodies.state.data()), c.a, sizeof(BodyState) / 32, 0, a);
+    gather4<W>(floats_of(bodies.state.data()), c.b, sizeof(BodyState) / 32, 0, b);
     c.share_a = b[3] * inverse_or_zero(a[3] + b[3]);
     // The impulses on the axes of now.
     JointPair<F> still{};

@@ -60,7 +60,7 @@ struct alignas(64) JointRow
       std::conditional_t<(JointShape<C>::bounded > 0), JointBounds<W, JointShape<C>::bounded>, NoPart<2>>,
       std::conditional_t<JointShape<C>::driven, JointDrive<W>, NoPart<3>> {
     using F = Wide<float, W>;
-    int32_t a[W], b[W];
+    int32_t a[W], b[W];                    // eight times the body's index, as in contact rows
     Vec3T<F> ra0, rb0, gap0;               // arms of the two anchors and the way from A's to B's, ...
     Vec3T<F> start_v, start_wa, start_wb;  // ... velocity of B relative to A and spins, at the start of the step
     Vec3T<F> turn_a, turn_b;               // angular impulses about their centres that both bodies' velocities hold
