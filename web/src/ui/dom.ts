@@ -39,6 +39,8 @@ export function amount(value: number, unit: string): string {
     const digits = size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3;
     return `${value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1")} ${unit}`;
 }
+// Components to two decimals, fewer where they are large.
 export function triple(v: readonly number[]): string {
-    return v.map((x) => x.toFixed(2).replace(/^-(0\.00)$/, "$1")).join("  ");
+    const size = Math.max(...v.map(Math.abs)), digits = size >= 100 ? 0 : size >= 10 ? 1 : 2;
+    return v.map((x) => x.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1")).join("  ");
 }
