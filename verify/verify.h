@@ -54,7 +54,7 @@ struct Report {
 
 struct CaseInfo {
     std::string_view id, title;
-    std::string_view lacking;  // the feature that it needs and the engine lacks; empty for cases that run
+    std::string_view lacking;  // what it needs and is not there; empty for cases that run
 };
 std::vector<CaseInfo> all_cases();
 std::string_view title_of(std::string_view case_id);  // empty for unknown ones
