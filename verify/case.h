@@ -84,7 +84,7 @@ struct Setting {
     bool hq() const { return quality == Quality::hq; }
     double pick(double d60, double hq_value) const { return hq() ? hq_value : d60; }
     float dt() const { return hq() ? 1.0f / 240.0f : 1.0f / 60.0f; }
-    int solver_steps() const { return hq() ? 16 : WorldConfig{}.solver_steps; }
+    int solver_steps() const { return WorldConfig{}.solver_steps; }
     int steps(double seconds) const { return static_cast<int>(seconds / static_cast<double>(dt()) + 0.5); }
     int scaled(int count, int least) const { return count / scale < least ? least : count / scale; }
 

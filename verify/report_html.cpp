@@ -50,7 +50,7 @@ std::string report_html(const Report& report, Quality quality) {
     std::string out =
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>Lendület: accuracy</title>\n";
     out += std::string(style) + "</head>\n<body>\n<h1>Lendület: measured against exact</h1>\n<p>";
-    out += quality == Quality::hq ? "Quality hq: steps of 1/240 s, 16 substeps. "
+    out += quality == Quality::hq ? "Quality hq: steps of 1/240 s with the shipping defaults. "
                                   : "Quality d60: steps of 1/60 s with the shipping defaults. ";
     out += "Of every figure the worst of several random places. " + std::to_string(report.rows.size()) + " figures, " +
            std::to_string(report.failed()) + " of them outside their tolerance.</p>\n";

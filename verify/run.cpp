@@ -43,6 +43,7 @@ constexpr Case table[] = {
     {{"A32", "tall stacks and a pyramid", ""}, tall_stacks},
     {{"A33", "recovery from overlap", ""}, penetration_recovery},
     {{"A34", "angle of repose", "rolling friction, which the case varies"}},
+    {{"A35", "hourglass", "tens of thousands of balls for minutes, longer than this should take"}},
     {{"A36", "pendulum", ""}, pendulum},
     {{"A38", "closed loops", ""}, closed_loops},
     {{"A39", "spring, mass and damper", ""}, spring_mass_damper},

@@ -122,8 +122,7 @@ void add_scene_options(CLI::App& command, bench::SceneOptions& options) {
 
 void add_verify_options(CLI::App& command, VerifyOptions& options, std::string& cases, std::string& quality) {
     command.add_option("--cases", cases, "which cases, such as A01,A08 (default all)")->type_name("ID,...");
-    command.add_option("--quality", quality, "d60 (steps of 1/60 s, the defaults) or hq (1/240 s, 16 substeps)")
-        ->type_name("NAME");
+    command.add_option("--quality", quality, "d60 (steps of 1/60 s) or hq (1/240 s)")->type_name("NAME");
     command.add_option("--threads", options.run.workers, "threads (default: as many as there are)")
         ->type_name("N")
         ->check(CLI::Range(1, 64));
