@@ -303,6 +303,7 @@ Status World::remove_body(BodyId id) {
         c = next;
     }
     world.bodies.info[slot].first_collider = no_slot;
+    if (slot < world.island_loads.size()) world.island_loads[slot] = {};
     if (overlapped) {
         auto others = [&](const Overlap& o) { return o.trigger_body != id && o.other_body != id; };
         keep_if(world.overlaps, others);

@@ -50,7 +50,8 @@ bool renew(BroadBox& box, BroadBox tight, float leeway, bool fast) {
     return true;
 }
 
-// What the narrow phase reads; `turn`: by how much the body turns within the step, rad.
+}  // namespace
+
 void set_frame(WorldData& world, uint32_t slot, float turn) {
     const ColliderInfo& info = world.colliders.info[slot];
     const ColliderPlace& place = world.colliders.place[slot];
@@ -73,6 +74,8 @@ void set_frame(WorldData& world, uint32_t slot, float turn) {
     f.half[0] = geometry.size.x, f.half[1] = geometry.size.y, f.half[2] = geometry.size.z;
     f.radius = info.radius;
 }
+
+namespace {
 
 // False where the collider's box stays as it was.
 bool bound_mover(WorldData& world, uint32_t slot, float dt) {

@@ -148,6 +148,10 @@ void lay_to_rest(WorldData& world) {
         if (info.type != BodyType::dynamic || !rests(world, slot)) continue;
         info.asleep = true;
         info.capped = false;
+        if (slot < world.island_loads.size()) {
+            IslandLoad& load = world.island_loads[slot];
+            load.slept = load.step == world.steps;
+        }
         world.bodies.momenta[slot] = {};
         world.bodies.change[slot] = {};
         world.movers.leaving = true;  // once this step is over

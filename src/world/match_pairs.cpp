@@ -66,8 +66,8 @@ void compare_all(WorldData& world) {
             ++at;
             continue;
         }
-        bool resting = (world.at_rest[p.a] & world.at_rest[p.b]) != 0;
-        if (!resting || is_new(world, p.a) || is_new(world, p.b)) world.box_pairs[fresh++] = p;
+        bool resting = (world.at_rest[p.a] & world.at_rest[p.b]) != 0, come = is_new(world, p.a) || is_new(world, p.b);
+        if (!resting || (come && table.find(p.a, p.b) == no_pair)) world.box_pairs[fresh++] = p;
     }
     while (at < table.listed.size()) end_pair(world, table.listed[at++].pair);
     world.box_pairs.resize_unset(fresh);

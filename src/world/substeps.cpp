@@ -34,7 +34,7 @@ void entry(WorldData& world, uint32_t slot) {
     IslandLoad& l = world.island_loads[slot];
     if (l.step == world.steps + 1) return;
     float height = dot(from_origin(world.bodies.pose[slot].position), world.config.gravity);
-    bool known = l.step == world.steps;
+    bool known = l.step == world.steps || l.slept;
     l = {world.steps + 1,
          slot,
          0,
@@ -46,6 +46,7 @@ void entry(WorldData& world, uint32_t slot) {
          known ? l.substeps : uint8_t{0},
          known ? l.waited : uint8_t{0},
          0,
+         false,
          false,
          false,
          false,

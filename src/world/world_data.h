@@ -52,6 +52,7 @@ struct IslandLoad {
     bool tied, decided;       // tied: to other joints or a kinematic body in motion, which take the setting's substeps
     bool in_group;            // of the body itself: in one of WorldData::joint_groups
     bool held;                // this body rests on a contact that carries already
+    bool slept;               // the body has slept since, and goes on from here when it wakes
     float carried;            // mass of this body and of what new contacts put on it, kg
 };
 
@@ -208,6 +209,9 @@ void remove_joints_of(WorldData& world, uint32_t body);
 // The body takes part in the steps from now on; or not any more, as it is about to be removed.
 void add_mover(WorldData& world, uint32_t slot);
 void remove_mover(WorldData& world, uint32_t slot);
+// Sets what the narrow phase reads of a collider, whose place is up to date; `turn`: by how much the body turns within
+// the step, rad.
+void set_frame(WorldData& world, uint32_t collider, float turn);
 // Whether two colliders whose boxes overlap are a pair.
 bool wanted(const WorldData& world, const BoxPair& p);
 // A new pair of two colliders, with what does not change while it lasts; its number.

@@ -75,7 +75,7 @@ SavedBody capture_body(const WorldData& world, uint32_t slot) {
     b.capped = info.capped, b.contained = info.contained, b.stopped = info.stopped;
     if (slot < world.island_loads.size()) {
         const IslandLoad& load = world.island_loads[slot];
-        b.loaded = load.step == world.steps && world.steps > 0;
+        b.loaded = (load.step == world.steps && world.steps > 0) || load.slept;
         b.substeps = load.substeps, b.waited = load.waited;
     }
     return b;

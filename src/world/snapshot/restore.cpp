@@ -119,6 +119,7 @@ void apply_body(WorldData& world, uint32_t slot, const SavedBody& b) {
     load.step = b.loaded ? world.steps : 0;
     load.parent = slot;
     load.substeps = b.substeps, load.waited = b.waited;
+    load.slept = b.loaded && b.asleep;
     world.island_loads[slot] = load;
 }
 
@@ -126,11 +127,7 @@ void apply_body(WorldData& world, uint32_t slot, const SavedBody& b) {
 void apply_frames(WorldData& world, uint32_t slot) {
     for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next) {
         world.colliders.update_place(c, world.bodies.pose[slot].orientation);
-        const Quat& q = world.colliders.place[c].rotation;
-        const Position& x = world.bodies.pose[slot].position;
-        ShapeFrame& f = world.frames[c];
-        f.rotation[0] = q.x, f.rotation[1] = q.y, f.rotation[2] = q.z, f.rotation[3] = q.w;
-        f.centre[0] = x.x, f.centre[1] = x.y, f.centre[2] = x.z;
+        set_frame(world, c, 0.0f);
     }
 }
 
