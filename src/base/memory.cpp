@@ -11,9 +11,9 @@ namespace lendulet {
 
 namespace {
 
-// Arrays from this size on lie on pages of their own, of this size where the system has such. A large scene touches some
-// tens of megabytes all over the place in every step: thousands of small pages, more than a processor keeps addresses
-// of, and each costs a fault when it is first touched.
+// Arrays from this size on lie on pages of their own, of this size where the system has such. A large scene touches
+// some tens of megabytes all over the place in every step: thousands of small pages, more than a processor keeps
+// addresses of, and each costs a fault when it is first touched.
 constexpr size_t huge_page = size_t{2} << 20;
 
 size_t alignment_for(size_t bytes) { return bytes >= huge_page ? huge_page : Memory::alignment; }

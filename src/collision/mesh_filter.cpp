@@ -13,9 +13,7 @@ using V = Vec3T<F>;
 constexpr size_t most_corners = 32;
 constexpr int directions = 4;  // the normal and three sides
 
-F height_of_box(Vec3 centre, Vec3 half, V d) {
-    return dot(splat<F>(centre), d) + dot(splat<F>(half), absolute(d));
-}
+F height_of_box(Vec3 centre, Vec3 half, V d) { return dot(splat<F>(centre), d) + dot(splat<F>(half), absolute(d)); }
 
 void heights_of_hull(const Geometry& g, const V (&d)[directions], F (&out)[directions]) {
     const HullData& hull = *g.hull;
@@ -34,7 +32,9 @@ void heights_of_hull(const Geometry& g, const V (&d)[directions], F (&out)[direc
 // How far the core reaches along each direction (as support_core does, for directions of any length), or farther.
 void heights(const Geometry& g, const V (&d)[directions], F (&out)[directions]) {
     F bottom = splat<F>(g.size.x), half = splat<F>(g.size.y), top = splat<F>(g.size.z);
-    auto ends = [&](int k, F spread) { out[k] = maximum(bottom * spread - half * d[k].y, top * spread + half * d[k].y); };
+    auto ends = [&](int k, F spread) {
+        out[k] = maximum(bottom * spread - half * d[k].y, top * spread + half * d[k].y);
+    };
     switch (g.kind) {
         case GeometryKind::segment:
             for (int k = 0; k < directions; ++k) out[k] = half * absolute(d[k].y);

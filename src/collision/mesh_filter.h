@@ -30,10 +30,10 @@ public:
 private:
     const MeshData& mesh_;
     const Geometry& shape_;
-    Mat3 to_shape_;                // rows: the shape's axes in those of the mesh
+    Mat3 to_shape_;                  // rows: the shape's axes in those of the mesh
     Vec3 position_, lower_, upper_;  // mesh frame
-    Vec3 centre_;                  // relative to the position, mesh axes
-    Vec3 box_lower_, box_upper_;   // of the core and the limit, the shape's axes
+    Vec3 centre_;                    // relative to the position, mesh axes
+    Vec3 box_lower_, box_upper_;     // of the core and the limit, the shape's axes
     float limit_;
 };
 

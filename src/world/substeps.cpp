@@ -1,8 +1,9 @@
 // Which islands take more substeps than the world's setting. A contact that carries R times the weight of its lighter
 // body sinks by 2 (leak / bias) R g h^2, and a column of size w and height H under it buckles for R (H / w)^2 g h^2 of
 // about w (docs/solver.md); both shrink with the square of the substep. Small islands that need it therefore take 2, 4,
-// 8 or 16 times as many substeps, and so do small groups of jointed bodies with loads or loops (joint_groups.cpp); large
-// ones, where that would cost, those with other joints and those on bodies that are moved by hand keep to the setting.
+// 8 or 16 times as many substeps, and so do small groups of jointed bodies with loads or loops (joint_groups.cpp);
+// large ones, where that would cost, those with other joints and those on bodies that are moved by hand keep to the
+// setting.
 //
 // Reads this step's contacts with their warm-start impulses, which are in units of the world's substep. Leaves the
 // bodies' slots in the records, and each body's class in `island_loads`.

@@ -131,9 +131,9 @@ struct WorldData {
     Array<uint32_t> touching;                   // records with points of listed pairs, in order
     Array<uint32_t> active;  // those of them that are solved, by class of substeps: at least one body awake
     Array<uint32_t> unsorted;
-    int awake_points = 0;                       // of listed pairs: points that touch or overlap
-    float awake_penetration = 0.0f;             // ... and the deepest overlap, m
-    Array<Overlap> overlaps;                    // those of pairs at rest first
+    int awake_points = 0;            // of listed pairs: points that touch or overlap
+    float awake_penetration = 0.0f;  // ... and the deepest overlap, m
+    Array<Overlap> overlaps;         // those of pairs at rest first
     // Joints that are solved, kept while they and the awake bodies stay the same.
     Array<uint32_t> active_joints;  // slots, by class of substeps and then in creation order
     Array<JointRecord> joint_records;

@@ -159,8 +159,7 @@ void apply_boxes(WorldData& world, const SavedState& state) {
     world.moving_boxes.clear();
     world.moving_boxes.append(state.boxes.data(), state.boxes.size());
     world.box_place.assign(world.frames.size(), no_box);
-    for (size_t i = 0; i < state.boxes.size(); ++i)
-        world.box_place[state.boxes[i].index] = static_cast<uint32_t>(i);
+    for (size_t i = 0; i < state.boxes.size(); ++i) world.box_place[state.boxes[i].index] = static_cast<uint32_t>(i);
     for (Array<uint32_t>* list : {&world.changed_boxes, &world.forgotten}) list->clear();
     world.rejoined.clear();
     world.fixed_changed = world.all_pairs_sought = true;
