@@ -10,7 +10,7 @@ extern const NarrowKernels avx2_narrow, avx512_narrow;
 #endif
 
 #if defined(__wasm__)
-const NarrowKernels& narrow_kernels(int width) { return width == 1 ? baseline_narrow_1 : baseline_narrow_4; }
+const NarrowKernels& narrow_kernels(int) { return baseline_narrow_4; }
 #else
 const NarrowKernels& narrow_kernels(int width) {
 #if defined(__x86_64__)
