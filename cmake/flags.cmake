@@ -21,8 +21,10 @@ endif()
 if(LENDULET_SINGLE_THREADED)
     target_compile_definitions(lendulet_flags INTERFACE LENDULET_SINGLE_THREADED)
 endif()
+# The core has no run-time type information, which checks of vptr need.
 if(LENDULET_SANITIZE)
-    target_compile_options(lendulet_flags INTERFACE -fsanitize=${LENDULET_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    target_compile_options(lendulet_flags INTERFACE -fsanitize=${LENDULET_SANITIZE} -fno-sanitize=vptr
+                           -fno-omit-frame-pointer -fno-sanitize-recover=all)
     target_link_options(lendulet_flags INTERFACE -fsanitize=${LENDULET_SANITIZE})
 endif()
 

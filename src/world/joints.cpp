@@ -420,7 +420,10 @@ bool same_bodies(const WorldData& world) {
 
 JointReuse pack_joints(WorldData& world, float h) {
     JointStore& joints = world.joints;
-    if (joints.count() == 0 && world.active_joints.empty()) return {};
+    if (joints.count() == 0 && world.active_joints.empty()) {
+        for (SolverPart& part : world.parts) part.first_joint = part.joint_count = 0;
+        return {};
+    }
     JointReuse reuse{!world.joints_changed && same_bodies(world), world.joints_h > 0.0f ? h / world.joints_h : 0.0f};
     if (reuse.same) {
         renew_sides(world);

@@ -131,7 +131,10 @@ TEST_P(OperationsTest, AMillion) {
         if (HasFatalFailure()) return;
         if (k == thousands / 4) bytes_early = broad_phase_.bytes();
     }
-    EXPECT_LE(broad_phase_.bytes(), bytes_early + bytes_early / 2);
+    // A slow build runs a twentieth, of which the first quarter has not yet seen what room such a story takes.
+    if (scaled(2) == 2) {
+        EXPECT_LE(broad_phase_.bytes(), bytes_early + bytes_early / 2);
+    }
     // Guttman's insertions are good or bad by chance, and those into tiles do not make tiles: they keep on average what
     // the others keep each time. The wide tree is built anew by what changes cost its searches, not by its surface.
     bool always = GetParam() != BroadPhaseType::rtree_quadratic && GetParam() != BroadPhaseType::rtree_str &&
