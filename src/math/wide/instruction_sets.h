@@ -18,14 +18,21 @@ inline bool cpu_has_avx512() { return false; }
 // The widest vectors of this machine, in lanes.
 inline int native_lanes() { return cpu_has_avx512() ? 16 : cpu_has_avx2() ? 8 : 4; }
 
-// The table for a width: the wide ones where they are compiled and the machine has their instructions, else the
-// baseline's of that width.
+// The tables of one set of kernels, by lanes; null where they are not compiled. WebAssembly has none of more than four
+// lanes: they would only make the module larger, and give the same bits.
 template <class Table>
-const Table& table_for_width(int width, const Table& one, const Table& four, const Table& eight, const Table& sixteen,
-                             const Table* avx2, const Table* avx512) {
-    if (width == 16 && avx512 && cpu_has_avx512()) return *avx512;
-    if (width == 8 && avx2 && cpu_has_avx2()) return *avx2;
-    return width == 16 ? sixteen : width == 8 ? eight : width == 4 ? four : one;
-}
+struct KernelTables {
+    const Table *one, *four, *eight, *sixteen;
+    const Table *avx2, *avx512;  // of eight and sixteen lanes, for machines that have these instructions
+
+    // The widest of at most `width` lanes, in the instructions of this machine.
+    const Table& of(int width) const {
+        if (width >= 16 && avx512 && cpu_has_avx512()) return *avx512;
+        if (width >= 16 && sixteen) return *sixteen;
+        if (width >= 8 && avx2 && cpu_has_avx2()) return *avx2;
+        if (width >= 8 && eight) return *eight;
+        return width >= 4 || !one ? *four : *one;
+    }
+};
 
 }  // namespace lendulet

@@ -5,22 +5,28 @@
 namespace lendulet {
 
 extern const JointTable baseline_joints_1, baseline_joints_4, baseline_joints_8, baseline_joints_16;
-#if defined(__x86_64__)
 extern const JointTable avx2_joints, avx512_joints;
-#endif
 
+namespace {
+
+// clang-format off
+constexpr KernelTables<JointTable> tables{
+    &baseline_joints_1, &baseline_joints_4,
 #if defined(__wasm__)
-const JointTable& joint_table(int width) { return width == 1 ? baseline_joints_1 : baseline_joints_4; }
+    nullptr, nullptr,
 #else
-const JointTable& joint_table(int width) {
+    &baseline_joints_8, &baseline_joints_16,
+#endif
 #if defined(__x86_64__)
-    const JointTable *avx2 = &avx2_joints, *avx512 = &avx512_joints;
+    &avx2_joints, &avx512_joints,
 #else
-    const JointTable *avx2 = nullptr, *avx512 = nullptr;
+    nullptr, nullptr,
 #endif
-    return table_for_width(width, baseline_joints_1, baseline_joints_4, baseline_joints_8, baseline_joints_16, avx2,
-                           avx512);
-}
-#endif
+};
+// clang-format on
+
+}  // namespace
+
+const JointTable& joint_table(int width) { return tables.of(width); }
 
 }  // namespace lendulet
