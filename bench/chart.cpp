@@ -5,6 +5,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "io/markup.h"
+
 namespace lendulet::bench {
 namespace {
 
@@ -123,29 +125,6 @@ std::string panel_svg(const Panel& panel, const std::vector<std::string>& names)
 }
 
 }  // namespace
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (char c : text) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += c;
-        }
-    }
-    return out;
-}
 
 std::string time_text(double ns) {
     const char* unit = "ns";

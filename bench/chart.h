@@ -29,7 +29,4 @@ std::string time_text(double ns);
 // "10", "1000", "10 000".
 std::string count_text(long n);
 
-// & < > " as entities.
-std::string escaped(const std::string& text);
-
 }  // namespace lendulet::bench

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "io/markup.h"
 #include "verify/report.h"
 
 namespace lendulet::verify {
@@ -75,29 +76,6 @@ struct Chart {
 };
 
 }  // namespace
-
-std::string escaped(const std::string& raw) {
-    std::string out;
-    for (char c : raw) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += c;
-        }
-    }
-    return out;
-}
 
 std::string plot_svg(const Curve& curve, int x, int y) {
     std::string out =

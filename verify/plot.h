@@ -13,7 +13,4 @@ inline constexpr int plot_width = 420, plot_height = 270;  // pixels
 // pages.
 std::string plot_svg(const Curve& curve, int x, int y);
 
-// & < > " as entities.
-std::string escaped(const std::string& text);
-
 }  // namespace lendulet::verify

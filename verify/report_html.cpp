@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "io/markup.h"
 #include "verify/plot.h"
 #include "verify/report.h"
 

@@ -4,7 +4,7 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "bench/chart.h"
+#include "io/markup.h"
 
 namespace lendulet::bench {
 
