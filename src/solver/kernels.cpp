@@ -12,12 +12,12 @@ namespace {
 // clang-format off
 constexpr KernelTables<SolverKernels> tables{
     &baseline_kernels_1, &baseline_kernels_4,
-#if defined(__wasm__)
+#if defined(LENDULET_FOUR_LANES)
     nullptr, nullptr,
 #else
     &baseline_kernels_8, &baseline_kernels_16,
 #endif
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(LENDULET_FOUR_LANES)
     &avx2_kernels, &avx512_kernels,
 #else
     nullptr, nullptr,

@@ -12,12 +12,12 @@ namespace {
 // clang-format off
 constexpr KernelTables<JointTable> tables{
     &baseline_joints_1, &baseline_joints_4,
-#if defined(__wasm__)
+#if defined(LENDULET_FOUR_LANES)
     nullptr, nullptr,
 #else
     &baseline_joints_8, &baseline_joints_16,
 #endif
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(LENDULET_FOUR_LANES)
     &avx2_joints, &avx512_joints,
 #else
     nullptr, nullptr,

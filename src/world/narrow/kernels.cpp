@@ -12,12 +12,16 @@ namespace {
 // clang-format off
 constexpr KernelTables<NarrowKernels> tables{
 #if defined(__wasm__)
-    nullptr, &baseline_narrow_4, nullptr, nullptr,
+    nullptr, &baseline_narrow_4,
 #else
     &baseline_narrow_1, &baseline_narrow_4,
+#endif
+#if defined(LENDULET_FOUR_LANES)
+    nullptr, nullptr,
+#else
     &baseline_narrow_8, &baseline_narrow_16,
 #endif
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(LENDULET_FOUR_LANES)
     &avx2_narrow, &avx512_narrow,
 #else
     nullptr, nullptr,
