@@ -20,7 +20,7 @@ ShapeFrame frame_of(const Geometry& box, Quat q, Vec3 centre) {
     return f;
 }
 
-void write(const BoxManifold& m, Manifold& out) {
+void write(const BatchManifold& m, Manifold& out) {
     out.normal = {m.normal[0], m.normal[1], m.normal[2]};
     out.count = m.count;
     for (int i = 0; i < m.count; ++i) {

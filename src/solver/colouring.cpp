@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "base/prefetch.h"
+
 namespace lendulet {
 namespace {
 
@@ -53,6 +55,7 @@ void ColourSchedule::build(const ContactRecord* records, const uint32_t* list, i
     if (count == 0) return;
     sorter_.begin(bodies.count, count, contact_classes);
     for (int i = 0; i < count; ++i) {
+        if (i + prefetch_distance < count) prefetch(&records[list[i + prefetch_distance]]);
         const ContactRecord& r = records[list[i]];
         bool moved_a = bodies.state[static_cast<size_t>(r.body_a)].inverse_mass > 0.0f;
         sorter_.add(r.body_a, moved_a, r.body_b, true, row_class(r.point_count));

@@ -1,5 +1,6 @@
 #include "solver/solver.h"
 
+#include "base/prefetch.h"
 #include "solver/impacts.h"
 
 namespace lendulet {
@@ -48,8 +49,10 @@ void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord*
                      int count) {
     schedule_.build(records, list, count, bodies, kernels_, scalar_);
     bouncing_.clear();
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count; ++i) {
+        if (i + prefetch_distance < count) prefetch(&records[list[i + prefetch_distance]].restitution);
         if (records[list[i]].restitution > 0.0f) bouncing_.push_back(list[i]);
+    }
     for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
         kernels.prepare(g, records, bodies, begin, end);
     });

@@ -72,6 +72,7 @@ void set_frame(WorldData& world, uint32_t slot, float turn) {
     bool foreseen = turn <= most_foreseen_turn || !world.config.continuous;
     f.turning = foreseen ? minimum(turn, 2.0f) * f.reach : 0.0f;
     f.half[0] = geometry.size.x, f.half[1] = geometry.size.y, f.half[2] = geometry.size.z;
+    f.rounding = geometry.rounding;
     f.radius = info.radius;
 }
 

@@ -24,17 +24,17 @@ void set_impulse(ContactRecord& r, float impulse, float limit) {
 
 }  // namespace
 
-void offer_first_load(WorldData& world, uint32_t record, uint32_t a, uint32_t b, bool both) {
+void offer_first_load(WorldData& world, uint32_t record, const TouchingBodies& bodies, bool both) {
     const ContactRecord& r = world.records[record];
     const Vec3 g = world.config.gravity;
     float down = dot(Vec3{r.normal[0], r.normal[1], r.normal[2]}, g);
     if (!(down * down > upright * upright * dot(g, g)) || (!both && down > 0.0f)) return;
-    uint32_t upper = down > 0.0f ? a : b, lower = down > 0.0f ? b : a;
+    uint32_t upper = down > 0.0f ? bodies.a : bodies.b, lower = down > 0.0f ? bodies.b : bodies.a;
     bool near = false;
     for (int j = 0; j < r.point_count; ++j) near = near || r.points[j].separation < gap_limit(world, upper);
     if (!near) return;
     float height = -dot(from_origin(world.bodies.pose[upper].position), g);
-    world.first_loads.push_back({height, upper, both ? lower : no_slot, record});
+    world.first_loads.push_back({height, upper, both ? lower : no_slot, record, bodies});
 }
 
 void guess_first_loads(WorldData& world, float weight) {

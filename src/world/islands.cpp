@@ -103,10 +103,7 @@ void form_islands(WorldData& world) {
     still.resize_unset(world.bodies.slots.capacity());
     for (uint32_t slot : world.movers.bodies) parent[slot] = slot, still[slot] = endless;
     world.touched_sleepers.clear();
-    for (uint32_t i : world.touching) {
-        const ColliderPair& p = world.pairs.pairs[world.records[i].pair];
-        link(world, world.colliders.info[p.a].body, world.colliders.info[p.b].body);
-    }
+    for (const TouchingBodies& t : world.touching_bodies) link(world, t.a, t.b);
     for (uint32_t joint : world.movers.joints)
         link(world, world.joints.info[joint].body_a, world.joints.info[joint].body_b);
     for (uint32_t slot : world.movers.bodies) {

@@ -13,6 +13,17 @@ constexpr int most_changes = 2;
 
 bool moved_by_constraints(const BodyInfo& info) { return info.type == BodyType::dynamic; }
 
+PairKind kind_of(const Geometry& a, const Geometry& b) {
+    auto is_ball = [](const Geometry& g) { return g.kind == GeometryKind::point; };
+    auto is_box = [](const Geometry& g) { return g.kind == GeometryKind::box; };
+    auto is_segment = [&](const Geometry& g) { return is_ball(g) || g.kind == GeometryKind::segment; };
+    if (is_sharp_box(a) && is_sharp_box(b)) return PairKind::boxes;
+    if (is_segment(a) && is_segment(b)) return PairKind::segments;
+    if (is_box(a) && is_ball(b)) return PairKind::box_ball;
+    if (is_ball(a) && is_box(b)) return PairKind::ball_box;
+    return has_closed_form(a, b) ? PairKind::plain : PairKind::general;
+}
+
 }  // namespace
 
 bool wanted(const WorldData& world, const BoxPair& p) {
@@ -35,14 +46,14 @@ uint32_t begin_pair(WorldData& world, const BoxPair& colliders) {
     const Geometry &a = c.geometry[p.a], &b = c.geometry[p.b];
     p.flipped = !moved_by_constraints(world.bodies.info[c.info[p.b].body]);
     p.fixed_a = p.flipped || !moved_by_constraints(world.bodies.info[c.info[p.a].body]);
+    p.body_a = c.info[p.flipped ? p.b : p.a].body;
+    p.body_b = c.info[p.flipped ? p.a : p.b].body;
     if (c.info[p.a].is_trigger || c.info[p.b].is_trigger) {
         p.kind = PairKind::trigger;
         return number;
     }
     world.pairs.place_records(p, a.kind == GeometryKind::mesh || b.kind == GeometryKind::mesh);
-    p.kind = is_sharp_box(a) && is_sharp_box(b) ? PairKind::boxes
-             : has_closed_form(a, b)            ? PairKind::round
-                                                : PairKind::general;
+    p.kind = p.flipped ? kind_of(b, a) : kind_of(a, b);
     return number;
 }
 

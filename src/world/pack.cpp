@@ -1,4 +1,5 @@
 // Stages 5 and 7: awake bodies and their contacts into the solver's packed arrays, and back.
+#include "base/prefetch.h"
 #include "dynamics/free_flight.h"
 #include "math/decay.h"
 #include "world/validate.h"
@@ -193,12 +194,17 @@ void pack_contacts(WorldData& world) {
         while (r.body_b >= world.parts[c].bodies.end) ++c;
         return c;
     };
-    for (uint32_t i : world.active) {
-        ContactRecord& r = world.records[i];
-        r.body_a = world.bodies.info[static_cast<size_t>(r.body_a)].solver_index;
-        r.body_b = world.bodies.info[static_cast<size_t>(r.body_b)].solver_index;
-        world.solver_bodies.motion[static_cast<size_t>(r.body_a)].free = 0.0f;
-        world.solver_bodies.motion[static_cast<size_t>(r.body_b)].free = 0.0f;
+    auto place_of = [&](uint32_t slot) { return world.bodies.info[slot].solver_index; };
+    auto tie = [&](int32_t body) { world.solver_bodies.motion[static_cast<size_t>(body)].free = 0.0f; };
+    for (size_t i = 0; i < world.touched; ++i) tie(place_of(world.loaded[i]));
+    const size_t count = world.active.size();
+    for (size_t i = 0; i < count; ++i) {
+        if (i + prefetch_distance < count) prefetch(&world.records[world.active[i + prefetch_distance]]);
+        const TouchingBodies& bodies = world.active_bodies[i];
+        ContactRecord& r = world.records[world.active[i]];
+        r.body_a = place_of(bodies.a);
+        r.body_b = place_of(bodies.b);
+        if (bodies.fixed_a) tie(r.body_a);
         ++counts[part_of(r)];
     }
     int first = 0;

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "base/memory.h"
+#include "base/prefetch.h"
 #include "broad_phase/box.h"
 #include "collision/narrow_phase.h"
 #include "world/narrow/kernels.h"
@@ -19,14 +20,18 @@ inline constexpr uint32_t no_pair = ~0u;
 
 // Which way a pair is collided.
 enum class PairKind : uint8_t {
-    boxes,  // two sharp boxes: in batches
-    round,  // a closed form, as cheap as finding out whether the bodies have moved
+    boxes,     // two sharp boxes: in batches, unless they have barely moved
+    segments,  // balls and capsules: in batches, always, as cheap as finding out whether the bodies have moved
+    box_ball,
+    ball_box,  // the same of a box and a ball, by which of them is the manifolds' A
+    plain,     // any other closed form: always
     general,
     trigger,  // whether they overlap is all that is asked
 };
 
 struct ColliderPair {
     uint32_t a, b;            // collider slots, a < b; a is no_pair once the pair has ended
+    uint32_t body_a, body_b;  // the bodies of the manifolds' A and B
     uint32_t first_record;    // of this pair's own stretch of records; of a trigger: see RestingContacts::hits
     uint8_t capacity, count;  // manifolds: room, and those found
     uint8_t prepared;         // records whose lasting parts are filled in
@@ -130,7 +135,9 @@ private:
 template <class Rests, class Rest>
 void PairTable::sweep(Rests&& rests, Rest&& rest) {
     size_t kept = 0;
-    for (const ListedPair& entry : listed) {
+    for (size_t i = 0; i < listed.size(); ++i) {
+        const ListedPair entry = listed[i];
+        if (i + prefetch_distance < listed.size()) prefetch(&pairs[listed[i + prefetch_distance].pair]);
         ColliderPair& pair = pairs[entry.pair];
         if (pair.a == no_pair) continue;
         if (rests(pair)) {

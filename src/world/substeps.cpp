@@ -6,9 +6,10 @@
 // setting.
 //
 // Reads this step's contacts with their warm-start impulses, which are in units of the world's substep. Leaves the
-// bodies' slots in the records, and each body's class in `island_loads`.
+// active ones with their bodies, and each body's class in `island_loads`.
 #include <utility>
 
+#include "base/prefetch.h"
 #include "world/world_data.h"
 
 namespace lendulet {
@@ -22,46 +23,59 @@ constexpr float kept_reserve = 1.6f;   // a class is left only when fewer subste
 constexpr float first_reserve = 4.0f;  // of loads that are guessed: what is built at rest shall not begin by swinging
 constexpr int patience = 60;           // ... for so many steps: a column that has just stiffened springs up a little
 
-uint32_t root(Array<IslandLoad>& loads, uint32_t i) {
-    while (loads[i].parent != i) {
-        loads[i].parent = loads[loads[i].parent].parent;
-        i = loads[i].parent;
+uint32_t root(Array<uint32_t>& parent, uint32_t i) {
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
     }
     return i;
 }
 
-// Begins the entry of a dynamic body, anew in every step.
-void entry(WorldData& world, uint32_t slot) {
-    IslandLoad& l = world.island_loads[slot];
-    if (l.step == world.steps + 1) return;
-    float height = dot(from_origin(world.bodies.pose[slot].position), world.config.gravity);
-    bool known = l.step == world.steps || l.slept;
-    l = {world.steps + 1,
-         slot,
-         0,
-         0.0f,
-         0.0f,
-         height,
-         height,
-         0,
-         known ? l.substeps : uint8_t{0},
-         known ? l.waited : uint8_t{0},
-         0,
-         false,
-         false,
-         false,
-         false,
-         false,
-         world.bodies.mass[slot].mass * world.bodies.info[slot].gravity_factor};
+bool moves(const WorldData& world, uint32_t slot) {
+    const BodyMomenta& m = world.bodies.momenta[slot];
+    return length_squared(m.p) + length_squared(m.L) > 0.0f;
 }
 
-void join(Array<IslandLoad>& loads, uint32_t a, uint32_t b) {
-    a = root(loads, a);
-    b = root(loads, b);
-    if (a == b) return;
+// Begins the entry of a dynamic body, anew in every step, with all that its contacts ask of it.
+void begin_entry(WorldData& world, uint32_t slot) {
+    const BodyStore& bodies = world.bodies;
+    IslandLoad& l = world.island_loads[slot];
+    const bool known = l.step == world.steps || l.slept;
+    const uint8_t before = known ? l.substeps : uint8_t{0}, waited = known ? l.waited : uint8_t{0};
+    l = {};
+    l.step = world.steps + 1;
+    l.lowest = l.highest = dot(from_origin(bodies.pose[slot].position), world.config.gravity);
+    l.before = before;
+    l.waited = waited;
+    l.moves = moves(world, slot);
+    l.slow = length_squared(bodies.velocity(slot)) < resting_speed * resting_speed;
+    l.inverse_mass = bodies.mass[slot].inverse_mass;
+    l.radius = bodies.info[slot].radius;
+    l.carried = bodies.mass[slot].mass * bodies.info[slot].gravity_factor;
+    world.island_parent[slot] = slot;
+    world.loaded.push_back(slot);
+}
+
+bool has_entry(const WorldData& world, uint32_t slot) { return world.island_loads[slot].step == world.steps + 1; }
+
+// Whether the body moves by constraints in this step; its entry is then there.
+bool takes_part(WorldData& world, uint32_t slot) {
+    if (has_entry(world, slot)) return true;
+    const BodyInfo& info = world.bodies.info[slot];
+    if (info.asleep || info.type != BodyType::dynamic) return false;
+    begin_entry(world, slot);
+    return true;
+}
+
+// Makes one island of two; returns its root, the smaller slot.
+uint32_t join(WorldData& world, uint32_t a, uint32_t b) {
+    Array<uint32_t>& parent = world.island_parent;
+    a = root(parent, a);
+    b = root(parent, b);
+    if (a == b) return a;
     if (b < a) std::swap(a, b);
-    IslandLoad &x = loads[a], &y = loads[b];
-    y.parent = a;
+    parent[b] = a;
+    IslandLoad &x = world.island_loads[a], &y = world.island_loads[b];
     x.contacts += y.contacts;
     x.sinking = maximum(x.sinking, y.sinking);
     x.buckling = maximum(x.buckling, y.buckling);
@@ -71,11 +85,7 @@ void join(Array<IslandLoad>& loads, uint32_t a, uint32_t b) {
     x.before = x.before > y.before ? x.before : y.before;
     x.waited = x.waited < y.waited ? x.waited : y.waited;
     x.tied |= y.tied;
-}
-
-bool moves(const WorldData& world, uint32_t slot) {
-    const BodyMomenta& m = world.bodies.momenta[slot];
-    return length_squared(m.p) + length_squared(m.L) > 0.0f;
+    return a;
 }
 
 float impulse_of(const ContactRecord& r) {
@@ -83,23 +93,21 @@ float impulse_of(const ContactRecord& r) {
 }
 
 // Adds what a contact carries to its island's loads, unless its bodies are fast. `both` are moving ones.
-void count_load(WorldData& world, const ContactRecord& r, float weight, bool both, float reserve = 1.0f) {
-    const BodyStore& bodies = world.bodies;
-    auto a = static_cast<uint32_t>(r.body_a), b = static_cast<uint32_t>(r.body_b);
-    auto slow = [&](uint32_t slot) { return length_squared(bodies.velocity(slot)) < resting_speed * resting_speed; };
-    float lightest = bodies.mass[b].inverse_mass, radius = bodies.info[b].radius, impulse = impulse_of(r);
+void count_load(WorldData& world, IslandLoad& island, const ContactRecord& r, const TouchingBodies& bodies, bool both,
+                float weight, float reserve = 1.0f) {
+    IslandLoad &a = world.island_loads[bodies.a], &b = world.island_loads[bodies.b];  // that of a static body is unused
+    float lightest = b.inverse_mass, radius = b.radius, impulse = impulse_of(r);
     if (both) {
-        lightest = maximum(lightest, bodies.mass[a].inverse_mass);
-        radius = minimum(radius, bodies.info[a].radius);
+        lightest = maximum(lightest, a.inverse_mass);
+        radius = minimum(radius, a.radius);
     }
     // The upper body of a contact that carries is held by it.
     bool a_above = dot(Vec3{r.normal[0], r.normal[1], r.normal[2]}, world.config.gravity) > 0.0f;
-    if (both || !a_above) world.island_loads[a_above ? a : b].held = true;
-    if (!(impulse * lightest > weight) || !slow(b) || (both && !slow(a))) return;
+    if (both || !a_above) (a_above ? a : b).held = true;
+    if (!(impulse * lightest > weight) || !b.slow || (both && !a.slow)) return;
     float ratio = reserve * impulse * lightest / weight, size = 1.15f * radius;  // a cube's edge from its diagonal
-    IslandLoad& l = world.island_loads[root(world.island_loads, b)];
-    l.sinking = maximum(l.sinking, ratio / size);
-    l.buckling = maximum(l.buckling, ratio / (size * size * size));
+    island.sinking = maximum(island.sinking, ratio / size);
+    island.buckling = maximum(island.buckling, ratio / (size * size * size));
 }
 
 // The least class whose substeps carry `load` times the island's loads.
@@ -139,11 +147,11 @@ void add_joint_groups(WorldData& world) {
         const JointedBody* list = world.jointed_bodies.data() + g.first;
         if (world.bodies.info[list[0].slot].asleep) continue;
         for (int i = 0; i < g.count; ++i) {
-            entry(world, list[i].slot);
+            if (!has_entry(world, list[i].slot)) begin_entry(world, list[i].slot);
             loads[list[i].slot].in_group = true;
-            join(loads, list[0].slot, list[i].slot);
+            join(world, list[0].slot, list[i].slot);
         }
-        IslandLoad& l = loads[root(loads, list[0].slot)];
+        IslandLoad& l = loads[root(world.island_parent, list[0].slot)];
         l.contacts += g.joints;
         l.sinking = maximum(l.sinking, 0.5f * g.sinking);
         l.least = g.least > l.least ? g.least : l.least;
@@ -155,8 +163,8 @@ void tie_other_joints(WorldData& world) {
     Array<IslandLoad>& loads = world.island_loads;
     if (world.active.empty() && world.joint_groups.empty()) return;
     auto mark = [&](uint32_t slot, uint32_t other) {
-        if (loads[slot].step != world.steps + 1) return;
-        loads[root(loads, slot)].tied |=
+        if (!has_entry(world, slot)) return;
+        loads[root(world.island_parent, slot)].tied |=
             !loads[slot].in_group || (world.bodies.info[other].type == BodyType::kinematic && moves(world, other));
     };
     for (uint32_t joint : world.movers.joints) {
@@ -168,59 +176,52 @@ void tie_other_joints(WorldData& world) {
 }  // namespace
 
 void choose_substeps(WorldData& world, float dt) {
-    BodyStore& bodies = world.bodies;
     Array<IslandLoad>& loads = world.island_loads;
-    loads.resize(bodies.slots.capacity());
+    loads.resize(world.bodies.slots.capacity());
+    world.island_parent.resize_unset(loads.size());
+    world.loaded.reserve(loads.size());
     const float gravity = length(world.config.gravity);
     const float weight = gravity * dt / static_cast<float>(world.config.solver_steps);
     world.active.clear();
+    world.active_bodies.clear();
     world.first_loads.clear();
-    for (uint32_t i : world.touching) {
-        ContactRecord& r = world.records[i];
-        const ColliderPair& p = world.pairs.pairs[r.pair];
-        bool flipped = (r.flags & contact_flipped) != 0;
-        uint32_t a = world.colliders.info[flipped ? p.b : p.a].body, b = world.colliders.info[flipped ? p.a : p.b].body;
-        const BodyInfo &info_a = bodies.info[a], &info_b = bodies.info[b];
-        if (info_b.asleep || info_b.type != BodyType::dynamic)
-            continue;  // B moves wherever one of them does, and islands wake as one
-        r.body_a = static_cast<int32_t>(a);
-        r.body_b = static_cast<int32_t>(b);
+    world.loaded.clear();
+    const size_t count = world.touching.size();
+    for (size_t k = 0; k < count; ++k) {
+        if (k + prefetch_distance < count) prefetch(&world.records[world.touching[k + prefetch_distance]]);
+        const TouchingBodies bodies = world.touching_bodies[k];
+        const uint32_t i = world.touching[k], a = bodies.a, b = bodies.b;
+        if (!takes_part(world, b)) continue;  // B moves wherever one of them does, and islands wake as one
         world.active.push_back(i);
-        bool both = info_a.type == BodyType::dynamic;
-        entry(world, b);
-        if (both) {
-            entry(world, a);
-            join(loads, a, b);
-        }
-        IslandLoad& l = loads[root(loads, b)];
-        ++l.contacts;
-        l.tied |= info_a.type == BodyType::kinematic && moves(world, a);
-        if (impulse_of(r) > 0.0f) count_load(world, r, weight, both);
-        else if (!moves(world, b) && !moves(world, a)) offer_first_load(world, i, a, b, both);
+        world.active_bodies.push_back(bodies);
+        const ContactRecord& r = world.records[i];
+        const bool both = !bodies.fixed_a && takes_part(world, a);
+        IslandLoad& island = loads[both ? join(world, a, b) : root(world.island_parent, b)];
+        ++island.contacts;
+        island.tied |= !both && world.bodies.info[a].type == BodyType::kinematic && moves(world, a);
+        if (impulse_of(r) > 0.0f) count_load(world, island, r, bodies, both, weight);
+        else if (!loads[b].moves && !moves(world, a)) offer_first_load(world, i, bodies, both);
     }
+    world.touched = world.loaded.size();
     if (!world.first_loads.empty()) {
         guess_first_loads(world, weight);
-        for (const FirstLoad& f : world.first_loads)
-            count_load(world, world.records[f.record], weight, f.lower != no_slot, first_reserve);
+        for (const FirstLoad& f : world.first_loads) {
+            IslandLoad& island = loads[root(world.island_parent, f.bodies.b)];
+            count_load(world, island, world.records[f.record], f.bodies, f.lower != no_slot, weight, first_reserve);
+        }
     }
     add_joint_groups(world);
     tie_other_joints(world);
-    auto decide_for = [&](uint32_t slot) {
-        IslandLoad& l = loads[root(loads, slot)];
+    for (uint32_t slot : world.loaded) {
+        IslandLoad& l = loads[root(world.island_parent, slot)];
         if (!l.decided) decide(l, gravity, dt, world.config.solver_steps);
-    };
-    for (uint32_t i : world.active) decide_for(static_cast<uint32_t>(world.records[i].body_b));
-    for (const JointGroupLoad& g : world.joint_groups) {
-        uint32_t slot = world.jointed_bodies[static_cast<size_t>(g.first)].slot;
-        if (!bodies.info[slot].asleep) decide_for(slot);
     }
 }
 
 int substep_class(WorldData& world, uint32_t slot) {
-    if (slot >= world.island_loads.size()) return 0;
+    if (slot >= world.island_loads.size() || !has_entry(world, slot)) return 0;
     IslandLoad& l = world.island_loads[slot];
-    if (l.step != world.steps + 1) return 0;
-    const IslandLoad& island = world.island_loads[root(world.island_loads, slot)];
+    const IslandLoad& island = world.island_loads[root(world.island_parent, slot)];
     l.substeps = island.substeps;
     l.waited = island.waited;
     return l.substeps;

@@ -29,37 +29,49 @@ struct NarrowScratch {
     MotionBatch motion;
     RefreshBatch kept;
     BoxLists<batch_capacity, 16> boxes;
-    uint32_t tested[MotionBatch::room];  // pairs of `motion`
-    uint32_t boxed[batch_capacity];      // pairs of `boxes`
-    int contact_points;                  // those that touch or overlap, and the deepest overlap, m
+    RoundBatch segments, box_balls;
+    uint32_t tested[MotionBatch::room];   // pairs of `motion`
+    uint32_t boxed[batch_capacity];       // pairs of `boxes`
+    uint32_t rounded[2][batch_capacity];  // pairs of `segments` and of `box_balls`
+    int contact_points;                   // those that touch or overlap, and the deepest overlap, m
     float max_penetration;
 };
 
 // Islands take 1, 2, 4, 8 or 16 times the substeps of the setting.
 inline constexpr int substep_classes = 5;
 
-// What a body's island carries, see substeps.cpp; sums are with the root.
-struct IslandLoad {
-    uint64_t step;    // one more than the steps before the one that this entry is of
-    uint32_t parent;  // union-find over body slots
-    int contacts;
-    float sinking, buckling;  // greatest load ratio of its contacts, per size and per size cubed
-    float lowest, highest;    // positions along gravity, times gravity
-    uint8_t least;            // class that its joints ask for
-    uint8_t before;           // class in the step before
-    uint8_t waited;           // steps since when fewer substeps would do
-    uint8_t substeps;         // class
-    bool tied, decided;       // tied: to other joints or a kinematic body in motion, which take the setting's substeps
-    bool in_group;            // of the body itself: in one of WorldData::joint_groups
-    bool held;                // this body rests on a contact that carries already
-    bool slept;               // the body has slept since, and goes on from here when it wakes
-    float carried;            // mass of this body and of what new contacts put on it, kg
+// What a body's island carries, see substeps.cpp; sums are with the root of WorldData::island_parent.
+struct alignas(64) IslandLoad {
+    uint64_t step = 0;  // one more than the steps before the one that this entry is of
+    int contacts = 0;
+    float sinking = 0.0f, buckling = 0.0f;  // greatest load ratio of its contacts, per size and per size cubed
+    float lowest = 0.0f, highest = 0.0f;    // positions along gravity, times gravity
+    uint8_t least = 0;                      // class that its joints ask for
+    uint8_t before = 0;                     // class in the step before
+    uint8_t waited = 0;                     // steps since when fewer substeps would do
+    uint8_t substeps = 0;                   // class
+    bool tied = false;  // to other joints or a kinematic body in motion: takes the setting's substeps
+    bool decided = false;
+    // Of the body itself.
+    bool in_group = false;  // in one of WorldData::joint_groups
+    bool held = false;      // rests on a contact that carries already
+    bool slept = false;     // has slept since, and goes on from here when it wakes
+    bool moves = false, slow = false;
+    float carried = 0.0f;  // its mass and that of what new contacts put on it, kg
+    float inverse_mass = 0.0f, radius = 0.0f;
+};
+
+// The bodies of a contact's A and B, by slot. Where one of them is not moved by constraints, it is A.
+struct TouchingBodies {
+    uint32_t a, b;
+    bool fixed_a;
 };
 
 // A new contact on which `upper` rests; `lower` is no_slot where that is static. See first_loads.cpp.
 struct FirstLoad {
     float height;  // times gravity
     uint32_t upper, lower, record;
+    TouchingBodies bodies;
 };
 
 // A body with joints, by slot, and the one that it was reached from: an index in its group, or -1.
@@ -129,7 +141,9 @@ struct WorldData {
     Array<ContactRecord> records;
     Array<FoundSeparations> found_separations;  // by record
     Array<uint32_t> touching;                   // records with points of listed pairs, in order
+    Array<TouchingBodies> touching_bodies;      // ... and their bodies, within a step
     Array<uint32_t> active;  // those of them that are solved, by class of substeps: at least one body awake
+    Array<TouchingBodies> active_bodies;  // in the order of `touching`
     Array<uint32_t> unsorted;
     int awake_points = 0;            // of listed pairs: points that touch or overlap
     float awake_penetration = 0.0f;  // ... and the deepest overlap, m
@@ -153,6 +167,8 @@ struct WorldData {
     Array<uint32_t> awake;  // slots, by class of substeps and then in order of slots
     SolverBodies solver_bodies;
     Array<IslandLoad> island_loads;  // by body slot
+    Array<uint32_t> loaded;          // slots of those of this step: bodies in contact and those of joint groups
+    size_t touched = 0;              // how many of them, in front, are in contact
     Array<FirstLoad> first_loads;    // of this step
     SolverPart parts[substep_classes];
     Solver solvers[substep_classes];
@@ -181,7 +197,7 @@ void update_islands(WorldData& world, float dt);
 void find_joint_groups(WorldData& world);
 void choose_substeps(WorldData& world, float dt);
 // Takes a contact between bodies at rest that has carried nothing, if its upper body rests on it. A may be static.
-void offer_first_load(WorldData& world, uint32_t record, uint32_t a, uint32_t b, bool both);
+void offer_first_load(WorldData& world, uint32_t record, const TouchingBodies& bodies, bool both);
 // Sets the impulses of what was offered; `weight`: what a substep of gravity gives to 1 kg, N s.
 void guess_first_loads(WorldData& world, float weight);
 void pack_bodies(WorldData& world, float dt);

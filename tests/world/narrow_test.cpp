@@ -52,12 +52,12 @@ std::vector<uint32_t> bits_of(const Boxes& boxes, int count, int* kinds) {
     for (int k = 0; k < count; ++k) {
         add(&boxes.lists.clearance[k], 4);
         if (boxes.lists.clearance[k] > boxes.lists.margin[k]) continue;
-        const BoxManifold& m = boxes.lists.out[k];
+        const BatchManifold& m = boxes.lists.out[k];
         add(&boxes.lists.feature[k], 4);
         add(&m.count, 4);
         if (m.count == 0) continue;
         ++kinds[boxes.lists.feature[k] > 6.0f];
-        add(&m, offsetof(BoxManifold, count));
+        add(&m, offsetof(BatchManifold, count));
     }
     return bits;
 }

@@ -15,10 +15,10 @@ struct WideManifold {
     F separation[4], name[4];
 };
 template <int W>
-LENDULET_FORCE_INLINE void store_manifolds(BoxManifold* out, const int32_t* index, const float* exchanged,
+LENDULET_FORCE_INLINE void store_manifolds(BatchManifold* out, const int32_t* index, const float* exchanged,
                                            const WideManifold<Wide<float, W>>& m) {
     using F = Wide<float, W>;
-    constexpr int stride = sizeof(BoxManifold) / sizeof(float);
+    constexpr int stride = sizeof(BatchManifold) / sizeof(float);
     float* base = floats_of(out);
     const F head[4] = {m.normal.x, m.normal.y, m.normal.z, m.follow};
     scatter4<W>(base, index, stride, 0, head);
@@ -27,12 +27,13 @@ LENDULET_FORCE_INLINE void store_manifolds(BoxManifold* out, const int32_t* inde
         scatter4<W>(base, index, stride, 4 + 4 * i, point);
     }
     for (int l = 0; l < W; ++l) {
-        BoxManifold& to = out[index[l]];
+        BatchManifold& to = out[index[l]];
         for (int i = 0; i < 4; ++i) {
             uint32_t name = static_cast<uint32_t>(static_cast<int32_t>(lane(m.name[i], l)));
             to.id[i] = exchanged[l] > 0.0f ? name << 16 | name >> 16 : name;  // A's feature in the upper half
         }
         to.count = static_cast<int32_t>(lane(m.count, l));
+        to.radius_a = to.radius_b = 0.0f;
     }
 }
 

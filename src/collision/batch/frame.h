@@ -14,9 +14,10 @@ struct alignas(64) ShapeFrame {
     float turning;      // most that turning moves a point of the shape within the step, m
     float arm[3];       // the shape's position from the centre of mass, world axes
     float reach;        // farthest that a point of the shape is from the centre of mass, m
-    float half[3];      // half extents of boxes
+    float half[3];      // half extents of boxes; of a capsule's core the second
+    float rounding;     // radius around the core
     float radius;       // of a sphere about the shape's position that holds it
-    uint32_t unused[12];
+    uint32_t unused[11];
 };
 static_assert(sizeof(ShapeFrame) == 128);
 

@@ -4,6 +4,7 @@
 // the poses and on what it owns. So pairs may be taken in any order by any worker, and gathered into batches at will.
 #include <new>
 
+#include "base/prefetch.h"
 #include "world/narrow/manifold_records.h"
 #include "world/world_data.h"
 
@@ -41,6 +42,10 @@ public:
         scratch_.motion.poses = scratch_.kept.poses = world.pairs.poses.data();
         scratch_.motion.dt = dt;
         scratch_.motion.fall = 0.5f * dt * dt * length(world.config.gravity);
+        for (RoundBatch* batch : {&scratch.segments, &scratch.box_balls}) {
+            batch->frames = scratch_.motion.frames;
+            batch->dt = dt, batch->fall = scratch_.motion.fall;
+        }
         scratch_.kept.found = world.found_separations.data();
         scratch_.kept.records = world.records.data();
     }
@@ -52,30 +57,64 @@ public:
         for (int i = 0; i < scratch_.motion.count; ++i) sort(i);
         flush_kept();
         collide_boxes();
+        collide_round(scratch_.segments, scratch_.rounded[0], world_.narrow_kernels.collide_segments);
+        collide_round(scratch_.box_balls, scratch_.rounded[1], world_.narrow_kernels.collide_box_balls);
     }
 
 private:
-    // Asks triggers, and lists the other pairs for the test whether they have moved.
+    // Asks triggers, lists round pairs for their batches and the others for the test whether they have moved.
     void gather(uint32_t begin, uint32_t end) {
-        MotionBatch& motion = scratch_.motion;
-        motion.count = 0;
+        const Array<ListedPair>& listed = world_.pairs.listed;
+        scratch_.motion.count = scratch_.segments.count = scratch_.box_balls.count = 0;
         for (uint32_t i = begin; i < end; ++i) {
-            const uint32_t number = world_.pairs.listed[i].pair;
+            const uint32_t number = listed[i].pair;
+            if (i + prefetch_distance < listed.size())
+                prefetch(&world_.pairs.pairs[listed[i + prefetch_distance].pair]);
             ColliderPair& p = world_.pairs.pairs[number];
             p.begun = false;
-            if (p.kind == PairKind::trigger) {
-                p.hit = overlap(collide_input(world_, p, 0.0f), world_.pairs.caches[number], settings());
-                continue;
+            const auto a = static_cast<int32_t>(collider_a(p)), b = static_cast<int32_t>(collider_b(p));
+            switch (p.kind) {
+                case PairKind::trigger:
+                    p.hit = overlap(collide_input(world_, p, 0.0f), world_.pairs.caches[number], settings());
+                    break;
+                case PairKind::segments:
+                    list_round(scratch_.segments, scratch_.rounded[0], number, a, b, 0.0f);
+                    break;
+                case PairKind::box_ball:
+                    list_round(scratch_.box_balls, scratch_.rounded[1], number, a, b, 0.0f);
+                    break;
+                case PairKind::ball_box:
+                    list_round(scratch_.box_balls, scratch_.rounded[1], number, b, a, 1.0f);
+                    break;
+                default:
+                    list_tested(number, a, b);
             }
-            int k = motion.count++;
-            scratch_.tested[k] = number;
-            motion.a[k] = static_cast<int32_t>(collider_a(p)), motion.b[k] = static_cast<int32_t>(collider_b(p));
-            motion.pose[k] = static_cast<int32_t>(number);
         }
+    }
+    void list_tested(uint32_t number, int32_t a, int32_t b) {
+        MotionBatch& motion = scratch_.motion;
+        int k = motion.count++;
+        scratch_.tested[k] = number;
+        motion.a[k] = a, motion.b[k] = b;
+        motion.pose[k] = static_cast<int32_t>(number);
+    }
+    static void list_round(RoundBatch& batch, uint32_t* numbers, uint32_t number, int32_t a, int32_t b,
+                           float exchanged) {
+        int k = batch.count++;
+        numbers[k] = number;
+        batch.a[k] = a, batch.b[k] = b;
+        batch.exchanged[k] = exchanged;
+    }
+
+    // Asks for the records that the pair some places ahead in a list has.
+    void ask_for_records(const uint32_t* numbers, int i, int count) const {
+        if (i + prefetch_distance >= count) return;
+        prefetch<3>(&world_.records[world_.pairs.pairs[numbers[i + prefetch_distance]].first_record]);
     }
 
     void sort(int i) {
         const MotionBatch& motion = scratch_.motion;
+        ask_for_records(scratch_.tested, i, motion.count);
         uint32_t index = scratch_.tested[i];
         ColliderPair& p = world_.pairs.pairs[index];
         if (motion.kept[i] > 0.0f) {
@@ -134,7 +173,10 @@ private:
     void write_single(ColliderPair& p, uint32_t index, const SomeManifold& manifold) {
         const ShapeFrame &a = world_.frames[collider_a(p)], &b = world_.frames[collider_b(p)];
         ContactRecord& r = record(p, 0);
-        if (p.count > 0) {
+        if (p.count > 0 && is_same_point(r, manifold)) {
+            fill_record(r, a, b, manifold);
+            if (scale_ != 1.0f) scale_impulses(r, scale_);
+        } else if (p.count > 0) {
             const OldContact old(r);
             fill_record(r, a, b, manifold);
             warm_start(r, old, a, b, scale_);
@@ -179,6 +221,7 @@ private:
         BoxBatch batch = boxes.batch(world_.frames.data(), boxed_);
         world_.narrow_kernels.collide_boxes(batch);
         for (int k = 0; k < boxed_; ++k) {
+            ask_for_records(scratch_.boxed, k, boxed_);
             uint32_t index = scratch_.boxed[k];
             ColliderPair& p = world_.pairs.pairs[index];
             KeptPose& pose = world_.pairs.poses[index];
@@ -197,13 +240,24 @@ private:
         }
     }
 
+    void collide_round(RoundBatch& batch, const uint32_t* numbers, void (*collide_batch)(RoundBatch&, BatchManifold*)) {
+        if (batch.count == 0) return;
+        BatchManifold* out = scratch_.boxes.out;
+        collide_batch(batch, out);
+        for (int k = 0; k < batch.count; ++k) {
+            ask_for_records(numbers, k, batch.count);
+            ColliderPair& p = world_.pairs.pairs[numbers[k]];
+            if (out[k].count > 0) write_single(p, numbers[k], out[k]);
+            finish(p, numbers[k], out[k].count > 0 ? 1 : 0, 0.0f, 0.0f);
+        }
+    }
+
     // `clearance`: least distance of the surfaces, where there are no manifolds.
     void finish(ColliderPair& p, uint32_t index, int count, float margin, float clearance) {
         p.count = static_cast<uint8_t>(count);
         for (int i = 0; i < count; ++i) tally(p.first_record + static_cast<uint32_t>(i));
+        if (p.kind != PairKind::general && p.kind != PairKind::boxes) return;
         KeptPose& pose = world_.pairs.poses[index];
-        pose.clearance = unkept;
-        if (p.kind == PairKind::round) return;
         uint32_t a = collider_a(p), b = collider_b(p);
         const ShapeFrame &fa = world_.frames[a], &fb = world_.frames[b];
         float near = minimum(fa.near, fb.near);
@@ -239,6 +293,7 @@ void add_overlap(WorldData& world, const ColliderPair& p) {
 void list_contacts(WorldData& world) {
     RestingContacts& rest = world.resting;
     world.touching.clear();
+    world.touching_bodies.clear();
     if (rest.hits_changed) {
         world.overlaps.clear();
         for (uint32_t number : rest.hits) add_overlap(world, world.pairs.pairs[number]);
@@ -246,11 +301,14 @@ void list_contacts(WorldData& world) {
         rest.hits_changed = false;
     }
     world.overlaps.resize_unset(static_cast<size_t>(rest.listed_hits));
-    for (const ListedPair& entry : world.pairs.listed) {
-        const ColliderPair& p = world.pairs.pairs[entry.pair];
+    const Array<ListedPair>& listed = world.pairs.listed;
+    for (size_t i = 0; i < listed.size(); ++i) {
+        if (i + prefetch_distance < listed.size()) prefetch(&world.pairs.pairs[listed[i + prefetch_distance].pair]);
+        const ColliderPair& p = world.pairs.pairs[listed[i].pair];
         for (uint32_t k = 0; k < p.count; ++k) {
             rest.place[p.first_record + k] = static_cast<uint32_t>(world.touching.size());
             world.touching.push_back(p.first_record + k);
+            world.touching_bodies.push_back({p.body_a, p.body_b, p.fixed_a});
         }
         if (p.hit) add_overlap(world, p);
     }
@@ -264,6 +322,8 @@ void find_contacts(WorldData& world, float dt) {
     world.found_separations.resize_unset(world.records.size());
     world.resting.place.resize_unset(world.records.size());
     for (Array<uint32_t>* list : {&world.touching, &world.active, &world.unsorted, &world.resting.records})
+        list->reserve(world.records.capacity());
+    for (Array<TouchingBodies>* list : {&world.touching_bodies, &world.active_bodies})
         list->reserve(world.records.capacity());
     world.touched_sleepers.reserve(world.records.capacity());
     world.narrow_scratch.resize_unset(static_cast<size_t>(world.tasks.workers()));

@@ -6,6 +6,7 @@
 
 #include "collision/batch/boxes.h"
 #include "collision/batch/frame.h"
+#include "collision/batch/round.h"
 #include "solver/contact.h"
 
 namespace lendulet {
@@ -55,6 +56,8 @@ struct NarrowKernels {
     void (*test_motion)(MotionBatch&);
     void (*refresh)(RefreshBatch&);
     void (*collide_boxes)(BoxBatch&);
+    void (*collide_segments)(RoundBatch&, BatchManifold*);
+    void (*collide_box_balls)(RoundBatch&, BatchManifold*);
 };
 
 // The kernels for 1, 4, 8 or 16 lanes in the best instructions this machine has for that width.

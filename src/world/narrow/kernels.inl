@@ -12,11 +12,13 @@ namespace {
 
 #include "collision/batch/boxes.inl"
 
+#include "collision/batch/round.inl"
+
 #include "world/narrow/recycle.inl"
 
 template <int W>
 constexpr NarrowKernels make_narrow_kernels() {
-    return {W, test_motion<W>, refresh<W>, collide_boxes<W>};
+    return {W, test_motion<W>, refresh<W>, collide_boxes<W>, collide_segments<W>, collide_box_balls<W>};
 }
 
 }  // namespace

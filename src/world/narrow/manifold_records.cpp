@@ -56,14 +56,14 @@ void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, con
     set_centres(r, a, b);
 }
 
-void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const BoxManifold& m) {
+void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const BatchManifold& m) {
     static_assert(sizeof m.points == sizeof r.points && sizeof m.id == sizeof r.id);
     static_assert(absent_separation == far_separation);
     r.point_count = m.count;
     for (int k = 0; k < 3; ++k) r.normal[k] = m.normal[k];
     std::memcpy(r.points, m.points, sizeof m.points);
     std::memcpy(r.id, m.id, sizeof m.id);
-    r.radius_a = r.radius_b = 0.0f;
+    r.radius_a = m.radius_a, r.radius_b = m.radius_b;
     r.follow = m.follow;
     r.key = 0;
     r.triangle = -1;

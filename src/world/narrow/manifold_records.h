@@ -12,7 +12,16 @@ void prepare_record(const WorldData& world, const ColliderPair& p, ContactRecord
 
 // All others but impulses and the index of the pair. `a` and `b` are the shapes' frames.
 void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const Manifold& m);
-void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const BoxManifold& m);
+void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const BatchManifold& m);
+
+// Whether a manifold has one point, which is that of the record: its impulses are what they were.
+inline bool is_same_point(const ContactRecord& r, int count, uint32_t id) {
+    return r.point_count == 1 && count == 1 && r.id[0] == id;
+}
+inline bool is_same_point(const ContactRecord& r, const Manifold& m) {
+    return is_same_point(r, m.count, m.points[0].id);
+}
+inline bool is_same_point(const ContactRecord& r, const BatchManifold& m) { return is_same_point(r, m.count, m.id[0]); }
 
 // What is left of a record while its manifold is replaced.
 struct OldContact {

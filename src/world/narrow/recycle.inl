@@ -62,9 +62,7 @@ void test_motion(MotionBatch& batch) {
         gather4<W>(floats_of(batch.frames), a, frame_stride, frame_arm, arm_a);
         gather4<W>(floats_of(batch.frames), b, frame_stride, frame_arm, arm_b);
         gather4<W>(floats_of(batch.poses), pose, sizeof(KeptPose) / sizeof(float), 12, state);
-        Vec3T<F> speed{vb[0] - va[0], vb[1] - va[1], vb[2] - va[2]};
-        F margin =
-            near + (splat<F>(batch.dt) * square_root(dot(speed, speed)) + splat<F>(batch.fall)) + (va[3] + vb[3]);
+        F margin = step_margin(near, va, vb, batch.dt, batch.fall);
         F moved = square_root(dot(m.shift, m.shift)) +
                   two * (vector_length(m.turn_a) * arm_a[3] + vector_length(m.turn_b) * arm_b[3]);
         F room = minimum(tolerance, state[0] - margin);
