@@ -17,6 +17,7 @@ struct Triangle {
     uint32_t original;  // in the user's list
     uint8_t touching;   // bit i: edge i can touch a shape on this side: the surface bends away, or ends
     uint8_t bent;       // bit i: edge i is not flat
+    uint8_t sharp;      // bit i: edge i bends by more than the faces on both sides can stand for
     bool from_behind;   // the centre is behind the front face
 };
 
@@ -32,6 +33,7 @@ inline Triangle make_triangle(const MeshData& mesh, uint32_t index, Vec3 positio
     r.original = t.original;
     r.touching = r.from_behind ? t.concave_edges : t.convex_edges;
     r.bent = t.convex_edges | t.concave_edges;
+    r.sharp = t.sharp_edges;
     return r;
 }
 

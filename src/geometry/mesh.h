@@ -22,11 +22,15 @@ struct MeshTriangle {
     // Bit i: the same for what is behind the triangle. Neither bit is set where the neighbour continues the triangle
     // within `flat_edge_sine`.
     uint8_t concave_edges;
+    uint8_t sharp_edges;  // bit i: edge i bends to either side by more than `gentle_edge_sine`, or has no unique neighbour
 };
 
 // Edges that bend by less than this (as sine of the angle, 0.57 degrees) do not touch on their own: the normals of the
 // two faces stand for theirs. Larger: smoother sliding over fine terrain, but edges of that angle feel like a face.
 inline constexpr float flat_edge_sine = 0.01f;
+// What touches an edge that bends by less than this (12 degrees), and is not round, touches both faces nearly as deep:
+// the two faces stand for the edge, and no closest points are sought. Rolling terrain has such edges only.
+inline constexpr float gentle_edge_sine = 0.2f;
 
 struct alignas(64) MeshNode {
     float lower[3][8], upper[3][8];

@@ -92,7 +92,7 @@ void add_triangles(MeshData& mesh, std::span<const Vec3> vertices, std::span<con
             triangle.neighbour[k] = -1;
         }
         triangle.original = static_cast<uint32_t>(t);
-        triangle.convex_edges = triangle.concave_edges = 7;
+        triangle.convex_edges = triangle.concave_edges = triangle.sharp_edges = 7;
         mesh.triangles.push_back(triangle);
         mesh.normals.push_back(normalize(to_float(normal)));
     }
@@ -133,6 +133,8 @@ void classify_edge(MeshData& mesh, uint32_t t, uint32_t k, uint32_t n, uint32_t 
     bool rises = height > flat_edge_sine * reach, falls = height < -flat_edge_sine * reach;
     if (rises || (!falls && !folded)) triangle.convex_edges &= cleared;
     if (falls || (!rises && !folded)) triangle.concave_edges &= cleared;
+    bool gentle = height <= gentle_edge_sine * reach && height >= -gentle_edge_sine * reach;
+    if (gentle && !folded) triangle.sharp_edges &= cleared;
 }
 
 // Two triangles are neighbours where exactly these two share an edge and run along it in opposite directions.
