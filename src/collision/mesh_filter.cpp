@@ -107,11 +107,13 @@ MeshFilter::MeshFilter(const MeshData& mesh, const Geometry& shape, Quat turn, V
 
 MeshFilter::Result MeshFilter::test(const uint32_t* triangles, int count) const {
     Rows corner[3], front;
+    float lean[lanes];                 // most that the direction of the shortest distance leans across a side, as sine
     for (int i = 0; i < lanes; ++i) {  // lanes beyond the last repeat the first
         uint32_t index = triangles[i < count ? i : 0];
         const MeshTriangle& t = mesh_.triangles[index];
         for (int k = 0; k < 3; ++k) corner[k].set(i, mesh_.vertices[t.vertex[k]]);
         front.set(i, mesh_.normals[index]);
+        lean[i] = t.sharp_edges == 0 ? gentle_edge_sine : 1.0f;  // beyond it the neighbour is nearer
     }
     V p[3];
     for (int k = 0; k < 3; ++k) p[k] = corner[k].load() - splat<F>(position_);
@@ -132,7 +134,8 @@ MeshFilter::Result MeshFilter::test(const uint32_t* triangles, int count) const 
     heights(shape_, away, reach);
     F height = dot(away[0], p[0]) - reach[0], limit = splat<F>(limit_);
     auto live = near & (height <= limit);
-    for (int k = 0; k < 3; ++k) live = live & (-reach[k + 1] - dot(out[k], p[k]) <= limit * length(out[k]));
+    const F beyond = load_wide<F>(lean) * limit;
+    for (int k = 0; k < 3; ++k) live = live & (-reach[k + 1] - dot(out[k], p[k]) <= beyond * length(out[k]));
     auto beside = meet(Boxes(p), box_lower_, box_upper_);
     live = live & (beside | (height < F{}));
     return {mask_bits(live) & used, ~mask_bits(beside) & used};

@@ -286,8 +286,8 @@ void convex_triangle(MeshQuery& q, const Triangle& t, bool apart, TriangleContac
     if (height > limit) return;
     ClippedFace clipped;
     clip_to_triangle(q, t, clipped);
-    // A face within a flat or hollow part can touch with its own normal only, and so can the part of one within a gently
-    // rolling surface that the shape is over. Overlapping from behind, the way out may be across an edge.
+    // A face within a flat or hollow part can touch with its own normal only, and so can the part of one within a
+    // gently rolling surface that the shape is over. Overlapping from behind, the way out may be across an edge.
     bool gentle = (t.touching & t.sharp) == 0 && !apart && clipped.count > 0;
     bool sure = (t.touching == 0 || gentle) && (height >= 0.0f || !t.from_behind || t.bent == 0);
     if (sure || is_shortest(q, t, clipped)) return face_contact(q, t, clipped, out);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/prefetch.h"
 #include "lendulet/math.h"
 #include "lendulet/shapes.h"
 #include "math/wide/wide.h"
@@ -22,7 +23,8 @@ struct MeshTriangle {
     // Bit i: the same for what is behind the triangle. Neither bit is set where the neighbour continues the triangle
     // within `flat_edge_sine`.
     uint8_t concave_edges;
-    uint8_t sharp_edges;  // bit i: edge i bends to either side by more than `gentle_edge_sine`, or has no unique neighbour
+    uint8_t
+        sharp_edges;  // bit i: edge i bends to either side by more than `gentle_edge_sine`, or has no unique neighbour
 };
 
 // Edges that bend by less than this (as sine of the angle, 0.57 degrees) do not touch on their own: the normals of the
@@ -83,8 +85,11 @@ void for_each_triangle(const MeshData& mesh, Vec3 lower, Vec3 upper, Visit&& vis
             int i = std::countr_zero(hits);
             if (node.child[i] >= 0) {
                 stack[top++] = static_cast<uint32_t>(node.child[i]);
+                prefetch<4>(&mesh.nodes[stack[top - 1]]);
             } else {
                 auto first = static_cast<uint32_t>(~node.child[i]);
+                prefetch(&mesh.triangles[first]);
+                prefetch(&mesh.normals[first]);
                 for (uint32_t k = 0; k < node.count[i]; ++k) visit(first + k);
             }
         }
