@@ -61,6 +61,13 @@ void PairTable::unhang(uint32_t collider, uint32_t link) {
     --first_[collider].count;
 }
 
+void PairTable::make_room(size_t more) {
+    if (more <= free_.size()) return;
+    const size_t needed = pairs.size() + (more - free_.size());
+    pairs.reserve(needed), caches.reserve(needed), poses.reserve(needed);
+    links_.reserve(2 * needed);
+}
+
 uint32_t PairTable::begin(uint32_t a, uint32_t b, size_t colliders) {
     if (free_.empty()) {
         free_.push_back(static_cast<uint32_t>(pairs.size()));

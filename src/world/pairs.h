@@ -75,6 +75,8 @@ public:
     // All stretches of records, those given back included.
     uint32_t record_count() const { return record_count_; }
 
+    // So that `more` pairs may begin at the cost of one enlargement.
+    void make_room(size_t more);
     // A new pair of colliders a < b, which is listed; its number. Colliders from `colliders` on are unknown.
     uint32_t begin(uint32_t a, uint32_t b, size_t colliders);
     // Gives a pair its stretch of records, for one manifold or for those of a mesh.
