@@ -49,9 +49,11 @@ struct alignas(64) IslandLoad {
     uint8_t least = 0;                      // class that its joints ask for
     uint8_t before = 0;                     // class in the step before
     uint8_t waited = 0;                     // steps since when fewer substeps would do
+    uint8_t urged = 0;                      // steps since when more substeps are needed
     uint8_t substeps = 0;                   // class
     bool tied = false;  // to other joints or a kinematic body in motion: takes the setting's substeps
     bool decided = false;
+    bool certain = false;  // loads that need not last first: what joints carry, and what is built at rest
     // Of the body itself.
     bool in_group = false;  // in one of WorldData::joint_groups
     bool held = false;      // rests on a contact that carries already
