@@ -54,6 +54,7 @@ void heights(const Geometry& g, const V (&d)[directions], F (&out)[directions]) 
         case GeometryKind::triangle:
         case GeometryKind::plane:
         case GeometryKind::mesh:
+        case GeometryKind::height_field:
             break;
     }
     for (int k = 0; k < directions; ++k) out[k] = F{};
@@ -88,9 +89,9 @@ auto meet(const Boxes& b, Vec3 box_lower, Vec3 box_upper) {
 
 }  // namespace
 
-MeshFilter::MeshFilter(const MeshData& mesh, const Geometry& shape, Quat turn, Vec3 position, Vec3 lower, Vec3 upper,
-                       Vec3 centre, float limit, float slack)
-    : mesh_(mesh),
+MeshFilter::MeshFilter(const TriangleSurface& surface, const Geometry& shape, Quat turn, Vec3 position, Vec3 lower,
+                       Vec3 upper, Vec3 centre, float limit, float slack)
+    : surface_(surface),
       shape_(shape),
       to_shape_(rotation_matrix(conjugate(turn))),
       position_(position),
@@ -109,9 +110,10 @@ MeshFilter::Result MeshFilter::test(const uint32_t* triangles, int count) const 
     Rows corner[3], front;
     for (int i = 0; i < lanes; ++i) {  // lanes beyond the last repeat the first
         uint32_t index = triangles[i < count ? i : 0];
-        const MeshTriangle& t = mesh_.triangles[index];
-        for (int k = 0; k < 3; ++k) corner[k].set(i, mesh_.vertices[t.vertex[k]]);
-        front.set(i, mesh_.normals[index]);
+        Vec3 corners[3];
+        surface_.corners(index, corners);
+        for (int k = 0; k < 3; ++k) corner[k].set(i, corners[k]);
+        front.set(i, surface_.normal(index));
     }
     V p[3];
     for (int k = 0; k < 3; ++k) p[k] = corner[k].load() - splat<F>(position_);

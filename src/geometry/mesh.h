@@ -28,6 +28,16 @@ struct MeshTriangle {
 // two faces stand for theirs. Larger: smoother sliding over fine terrain, but edges of that angle feel like a face.
 inline constexpr float flat_edge_sine = 0.01f;
 
+// Unit normal of a triangle, or the zero vector where it has no area.
+Vec3 normal_of_triangle(Vec3 a, Vec3 b, Vec3 c);
+
+// How a surface goes on across the edge from a to b of a triangle with the unit normal given, into a neighbour with the
+// corner `far` opposite to that edge.
+struct EdgeBend {
+    bool touches_front, touches_back;  // see MeshTriangle
+};
+EdgeBend bend_across(Vec3 a, Vec3 b, Vec3 far, Vec3 normal, Vec3 neighbour_normal);
+
 struct alignas(64) MeshNode {
     float lower[3][8], upper[3][8];
     int32_t child[8];  // >= 0: node; < 0: ~first triangle of a leaf; empty slots have inverted boxes
@@ -41,10 +51,14 @@ struct MeshData {
     std::vector<Vec3> vertices;           // those in use, each position once
     std::vector<MeshTriangle> triangles;  // in the order of the hierarchy's leaves
     std::vector<Vec3> normals;            // unit, one a triangle
+    std::vector<uint32_t> place;          // by number in the user's list: in `triangles`; of those without area: 0
     std::vector<MeshNode> nodes;          // [0] is the root
     Vec3 lower, upper;
     float radius = 0.0f;  // largest distance of a vertex from the local origin
     int dropped = 0;
+    bool one_sided = false;
+    uint8_t most_material = 0;
+    std::vector<uint8_t> materials;        // by number in the user's list; empty: all 0
     std::shared_ptr<const HullData> hull;  // null where the vertices are flat
 };
 

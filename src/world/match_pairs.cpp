@@ -39,7 +39,7 @@ uint32_t begin_pair(WorldData& world, const BoxPair& colliders) {
         p.kind = PairKind::trigger;
         return number;
     }
-    world.pairs.place_records(p, a.kind == GeometryKind::mesh || b.kind == GeometryKind::mesh);
+    world.pairs.place_records(p, has_triangles(a) || has_triangles(b));
     p.kind = is_sharp_box(a) && is_sharp_box(b) ? PairKind::boxes
              : has_closed_form(a, b)            ? PairKind::round
                                                 : PairKind::general;
