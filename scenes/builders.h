@@ -13,6 +13,7 @@ SceneDescription capsule_pile(int count);
 SceneDescription convex_pile(int count);
 SceneDescription mixed_pile(int count);
 SceneDescription mesh_terrain(int count);
+SceneDescription height_field(int count);
 
 // stacks.cpp: ordered heaps that should stand
 SceneDescription large_pyramid(int base);

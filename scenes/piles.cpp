@@ -62,6 +62,33 @@ void add_terrain(SceneDescription& scene, uint32_t cells, float cell) {
     scene.meshes.push_back({std::move(vertices), std::move(indices), std::move(mesh)});
 }
 
+// The same hills as a height field, of rock below, with bands of mud and of ice across the slopes.
+void add_height_field(SceneDescription& scene, int cells, float cell) {
+    static const Material table[] = {
+        {.static_friction = 0.6f, .dynamic_friction = 0.5f},
+        {.static_friction = 1.2f, .dynamic_friction = 1.0f, .friction_combine = CombineRule::maximum},
+        {.static_friction = 0.05f, .dynamic_friction = 0.03f, .friction_combine = CombineRule::minimum}};
+    std::vector<float> heights;
+    std::vector<uint8_t> materials;
+    float half = 0.5f * static_cast<float>(cells) * cell;
+    for (int row = 0; row <= cells; ++row)
+        for (int column = 0; column <= cells; ++column) {
+            float x = static_cast<float>(column) * cell - half, z = static_cast<float>(row) * cell - half;
+            heights.push_back(terrain_height(x, z));
+            if (row == cells || column == cells) continue;
+            int band = (column / 12) % 4;
+            materials.push_back(static_cast<uint8_t>(band == 1 ? 1 : band == 3 ? 2 : 0));
+        }
+    HeightFieldDef def;
+    def.columns = def.rows = cells + 1;
+    def.heights = heights, def.materials = materials;
+    def.cell_x = def.cell_z = cell;
+    def.origin = {-half, 0.0f, -half};
+    SceneBody& ground = add_static(scene, HeightField::from_heights(def).value(), {});
+    ground.name = "terrain";
+    ground.colliders[0].materials = table;
+}
+
 }  // namespace
 
 SceneDescription box_pile(int count) { return pile(Kind::box, count, 1.8f); }
@@ -79,6 +106,24 @@ SceneDescription mesh_terrain(int count) {
     for (int i = 0; i < count; ++i) {
         Position position{(static_cast<float>(i % 32) - 15.5f) * 2.0f, 5.0f + 2.0f * static_cast<float>(i / 1024),
                           (static_cast<float>(i / 32 % 32) - 15.5f) * 2.0f};
+        add_body(scene, props.shape(Kind::mixed, i), position).orientation = random.rotation();
+    }
+    return scene;
+}
+
+// A heap over a summit, which breaks up and rolls down on all sides.
+SceneDescription height_field(int count) {
+    SceneDescription scene;
+    scene.steps = 400;
+    add_height_field(scene, 224, 0.5f);
+    Random random;
+    Props props(random);
+    const float summit_x = 0.5f * pi / 0.15f;
+    int side = pile_side(count), layer = side * side;
+    float inner = 0.5f * static_cast<float>(side);
+    for (int i = 0; i < count; ++i) {
+        float x = static_cast<float>(i % side) + 0.5f - inner, z = static_cast<float>(i / side % side) + 0.5f - inner;
+        Position position{summit_x + 1.4f * x, 4.5f + 1.4f * static_cast<float>(i / layer), 1.4f * z};
         add_body(scene, props.shape(Kind::mixed, i), position).orientation = random.rotation();
     }
     return scene;

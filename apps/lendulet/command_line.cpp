@@ -6,8 +6,10 @@
 
 #include "apps/lendulet/commands.h"
 #include "bench/broad_phase/bench.h"
+#include "bench/collision/bench.h"
 #include "bench/lists.h"
 #include "bench/scenes/bench.h"
+#include "explain/explain.h"
 #include "io/file.h"
 
 namespace lendulet::cli {
@@ -120,6 +122,24 @@ void add_scene_options(CLI::App& command, bench::SceneOptions& options) {
     command.add_option("--csv", options.csv, "write the results as CSV")->type_name("FILE");
 }
 
+void add_collision_options(CLI::App& command, bench::CollisionOptions& options) {
+    command.add_option("--pairs", options.pairs, "pairs of each case (default 20000)")->type_name("N");
+    command.add_option("--rays", options.rays, "rays (default 100000)")->type_name("N");
+    command.add_option("--bodies", options.bodies, "boxes of the pile that they meet (default 16000)")->type_name("N");
+    command.add_option("--repeats", options.repeats, "rounds (default 9)")->type_name("N");
+    command.add_option("--csv", options.csv, "write the results as CSV")->type_name("FILE");
+}
+
+void add_explain_options(CLI::App& command, explain::Options& options) {
+    command.add_option("WHAT", options.what, "gjk, epa, clip or sat")->required();
+    command.add_option("A", options.a, "KIND:NUMBERS[@X,Y,Z[@RX,RY,RZ]], such as box:0.5,0.5,0.5@1,0,0@0,0,30")
+        ->required();
+    command.add_option("B", options.b, "the other shape")->required();
+    command.add_option("--simplex", options.simplex, "half-space (default) or barycentric")->type_name("NAME");
+    command.add_option("--svg", options.svg, "the picture (default explain-WHAT.svg)")->type_name("FILE");
+    command.add_flag("--frames", options.frames, "each step in a file of its own");
+}
+
 void add_verify_options(CLI::App& command, VerifyOptions& options, std::string& cases, std::string& quality) {
     command.add_option("--cases", cases, "which cases, such as A01,A08 (default all)")->type_name("ID,...");
     command.add_option("--quality", quality, "d60 (steps of 1/60 s) or hq (1/240 s)")->type_name("NAME");
@@ -150,12 +170,13 @@ int finish(const Result<int>& measured) { return measured.ok() ? measured.value(
 }  // namespace
 
 int execute(int argc, char** argv) {
-    if (argc < 2) return fail("a command is required: run, info, scenes, verify or bench (--help says more)");
+    if (argc < 2) return fail("a command is required: run, info, scenes, verify, explain or bench (--help says more)");
     std::string first = argv[1];
     bool known = first.rfind('-', 0) == 0;
-    for (const char* command : {"run", "info", "scenes", "verify", "bench"}) known |= first == command;
+    for (const char* command : {"run", "info", "scenes", "verify", "explain", "bench"}) known |= first == command;
     if (!known) {
-        return fail("\"" + printable(first) + "\" is no command; there are run, info, scenes, verify and bench");
+        return fail("\"" + printable(first) +
+                    "\" is no command; there are run, info, scenes, verify, explain and bench");
     }
     CLI::App app{"Lendulet: rigid bodies in three dimensions.", "lendulet"};
     app.set_version_flag("--version", "lendulet " LENDULET_VERSION);
@@ -180,6 +201,12 @@ int execute(int argc, char** argv) {
     bench::SceneOptions bench_scene_options;
     CLI::App* bench_scenes_command = bench_command->add_subcommand("scenes", "whole steps of built-in scenes");
     add_scene_options(*bench_scenes_command, bench_scene_options);
+    explain::Options explained;
+    CLI::App* explain_command = app.add_subcommand("explain", "draw a collision algorithm step by step");
+    add_explain_options(*explain_command, explained);
+    bench::CollisionOptions collision;
+    CLI::App* collision_command = bench_command->add_subcommand("collision", "distance queries, manifolds and rays");
+    add_collision_options(*collision_command, collision);
     try {
         app.parse(argc, argv);
         if (run_command->parsed()) finish_run_options(*run_command, raw, options);
@@ -189,6 +216,8 @@ int execute(int argc, char** argv) {
         }
         if (broad_phase_command->parsed()) refuse_empty(*broad_phase_command);
         if (bench_scenes_command->parsed()) refuse_empty(*bench_scenes_command);
+        if (collision_command->parsed()) refuse_empty(*collision_command);
+        if (explain_command->parsed()) refuse_empty(*explain_command);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
         return fail(printable(error.what()));
@@ -200,6 +229,8 @@ int execute(int argc, char** argv) {
     if (scenes_command->parsed()) return list_scenes();
     if (verify_command->parsed()) return verify(verify_options);
     if (bench_scenes_command->parsed()) return finish(bench::bench_scenes(bench_scene_options));
+    if (explain_command->parsed()) return finish(explain::explain(explained));
+    if (collision_command->parsed()) return finish(bench::bench_collision(collision));
     if (broad_phase_command->parsed()) return finish(bench::bench_broad_phase(broad_phase));
     return fail("a command is required");
 }

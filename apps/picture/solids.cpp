@@ -129,6 +129,7 @@ struct AddShape {
         surface.add_quad(c - a - b, c + a - b, c + a + b, c - a + b, n);
     }
     void operator()(const TriangleMesh&) {}
+    void operator()(const HeightField&) {}
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ struct Triangle {
 };
 
 // The surface of a shape in its local frame. Curved surfaces are cut finely enough for a picture; sharp shapes are
-// drawn without their rounding. Planes become a large square; meshes give nothing.
+// drawn without their rounding. Planes become a large square; meshes and height fields give nothing.
 std::vector<Triangle> triangles_of(const lendulet::Shape& shape);
 
 }  // namespace picture

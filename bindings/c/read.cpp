@@ -50,6 +50,7 @@ struct Describe {
     void operator()(const ConvexHull& s) { out.rounding = s.rounding(); }
     void operator()(const Plane& s) { sizes(s.normal.x, s.normal.y, s.normal.z, s.offset); }
     void operator()(const TriangleMesh&) {}
+    void operator()(const HeightField&) {}
 };
 
 template <class T, int Number>
@@ -58,12 +59,14 @@ static_assert(is_number<Sphere, LENDULET_SPHERE> && is_number<Capsule, LENDULET_
               is_number<TaperedCapsule, LENDULET_TAPERED_CAPSULE> && is_number<Box, LENDULET_BOX> &&
               is_number<Cylinder, LENDULET_CYLINDER> && is_number<TaperedCylinder, LENDULET_TAPERED_CYLINDER> &&
               is_number<Cone, LENDULET_CONE> && is_number<ConvexHull, LENDULET_HULL> &&
-              is_number<Plane, LENDULET_PLANE> && is_number<TriangleMesh, LENDULET_MESH>);
+              is_number<Plane, LENDULET_PLANE> && is_number<TriangleMesh, LENDULET_MESH> &&
+              is_number<HeightField, LENDULET_HEIGHT_FIELD>);
 
 // What colliders with the same surface share.
 const void* surface_of(const Shape& shape) {
     if (const auto* hull = std::get_if<ConvexHull>(&shape)) return &hull->data();
     if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) return &mesh->data();
+    if (const auto* field = std::get_if<HeightField>(&shape)) return &field->data();
     return nullptr;
 }
 
@@ -157,11 +160,13 @@ lendulet_result lendulet_read_mesh(lendulet_world* world, int32_t mesh, lendulet
     if (mesh < 0 || static_cast<size_t>(mesh) >= world->meshes.size())
         return refuse({ErrorCode::bad_mesh, "read_mesh: there is no mesh of that number; read the colliders first"});
     auto take = [&](const auto& surface) {
-        world->vertices.assign(surface.vertices().begin(), surface.vertices().end());
+        const auto vertices = surface.vertices();
+        world->vertices.assign(vertices.begin(), vertices.end());
         world->indices = surface.triangles();
     };
     const Shape& shape = world->meshes[static_cast<size_t>(mesh)];
     if (const auto* hull = std::get_if<ConvexHull>(&shape)) take(*hull);
+    else if (const auto* field = std::get_if<HeightField>(&shape)) take(*field);
     else take(std::get<TriangleMesh>(shape));
     static_assert(sizeof(Vec3) == 3 * sizeof(float));
     *out = {&world->vertices.data()->x, world->indices.data(), static_cast<int32_t>(world->vertices.size()),

@@ -57,6 +57,9 @@ struct ColliderDef {
     Shape shape{};
     Transform local{};  // from the body's frame to the shape's
     Material material{};
+    // For meshes and height fields whose triangles have materials (TriangleOptions): the table that these choose from,
+    // copied. Must have a place for each of them. Empty: all triangles have `material`.
+    std::span<const Material> materials{};
     CollisionFilter filter{};
     float density = 1000.0f;  // kg/m^3, > 0; ignored where the body's mass is given
     bool is_trigger = false;  // reports overlaps, neither pushes nor adds mass

@@ -118,7 +118,8 @@ enum {
     LENDULET_CONE = 6,             /* half height, radius */
     LENDULET_HULL = 7,             /* see `mesh` */
     LENDULET_PLANE = 8,            /* normal, offset: solid where dot(normal, p) <= offset */
-    LENDULET_MESH = 9              /* see `mesh` */
+    LENDULET_MESH = 9,             /* see `mesh` */
+    LENDULET_HEIGHT_FIELD = 10     /* see `mesh`: its triangles */
 };
 
 /* A shape on a body. */
@@ -134,7 +135,7 @@ typedef struct lendulet_collider {
 
 lendulet_result lendulet_read_colliders(lendulet_world* world, const lendulet_collider** out);
 
-/* Surface of a hull or a mesh, shared by all colliders that have it. */
+/* Surface of a hull, a mesh or a height field, shared by all colliders that have it. */
 typedef struct lendulet_mesh {
     const float* vertices;   /* 3 a vertex */
     const uint32_t* indices; /* 3 a triangle, counter-clockwise from outside */

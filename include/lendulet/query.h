@@ -1,8 +1,8 @@
 // Questions to a world, to one body or to one shape: rays, casts, overlaps, closest points, containment.
 //
 // What they see is the present: every collider where its body is now, also bodies that were added, removed or moved
-// since the last step. All solids are closed sets, so touching counts. A mesh is a surface without an inside, met from
-// both sides.
+// since the last step. All solids are closed sets, so touching counts. Meshes and height fields are
+// surfaces without an inside, met from both sides unless they are one-sided.
 //
 // Errors are ErrorCode::bad_query with a sentence: numbers that are not finite, rays and casts without length, boxes
 // whose lower corner is above the upper one, shapes that no body accepts, ids of bodies that are gone. See
@@ -22,7 +22,7 @@ struct Ray {
     float max_fraction = 1.0f;
 };
 
-// A shape somewhere. For most questions it must be convex: neither a plane nor a mesh.
+// A shape somewhere. For most questions it must be convex: neither a plane nor a surface of triangles.
 struct PosedShape {
     Shape shape{};
     Pose pose{};  // of the shape's frame
@@ -53,7 +53,7 @@ struct QueryHit {
     bool hit = false;  // where not, the rest is unset
     BodyId body{};     // null where a single shape was asked
     ColliderId collider{};
-    int32_t triangle = -1;  // of a mesh, as counted when it was made
+    int32_t triangle = -1;  // of a mesh or height field, as counted when it was made
     float fraction = 1.0f;  // of the translation
     Position point{};       // on the collider's surface
     Vec3 normal{};          // unit, out of the collider there
@@ -71,7 +71,8 @@ struct Proximity {
     ColliderId collider{};
     int32_t triangle = -1;
     // Between the surfaces, m; negative where they overlap: the length of the shortest way out. Moving A by
-    // distance * normal makes them touch. Of overlapping triangles of a mesh the one that takes the longest way counts.
+    // distance * normal makes them touch. Of overlapping triangles of a surface the one that takes the longest way
+    // counts.
     float distance = 0.0f;
     Vec3 normal{};                  // unit, from A to B
     Position point_a{}, point_b{};  // on the surfaces
@@ -79,7 +80,7 @@ struct Proximity {
     explicit operator bool() const { return found; }
 };
 
-// --- one shape at a pose; a mesh or a plane may be the target
+// --- one shape at a pose; a mesh, a height field or a plane may be the target
 
 // Where the ray meets the shape first.
 Result<QueryHit> cast_ray(const PosedShape& target, const Ray& ray);
@@ -90,7 +91,7 @@ Result<QueryHit> cast_shape(const PosedShape& target, const ShapeCast& cast);
 Result<Proximity> closest_points(const PosedShape& a, const PosedShape& b);
 // Whether the two have a point in common. One of them must be convex.
 Result<bool> overlaps(const PosedShape& a, const PosedShape& b);
-// Whether the point is in the solid; never, where that is a mesh.
+// Whether the point is in the solid; never, where that is a mesh or height field.
 Result<bool> contains(const PosedShape& shape, Position point);
 
 }  // namespace lendulet

@@ -60,6 +60,7 @@ struct Cone {
 
 struct HullData;
 struct MeshData;
+struct HeightFieldData;
 
 // The convex hull of points, built once and shared by any number of colliders.
 class ConvexHull {
@@ -91,20 +92,34 @@ struct Plane {
     float offset = 0.0f;
 };
 
+// What triangles may have besides their corners.
+struct TriangleOptions {
+    // One for each triangle as given: a place in the table ColliderDef::materials. Empty: 0 for all. Where the collider
+    // has no table, its one material is that of all triangles.
+    std::span<const uint8_t> materials{};
+    // Only what has its centre before a triangle's front touches it, and rays and casts meet it from there alone.
+    // Distances, overlaps and nearest points know no sides.
+    bool one_sided = false;
+};
+
 // Triangles with counter-clockwise front faces, shared by any number of colliders. On a static or kinematic body the
-// triangles themselves collide (both sides); on a moving body their convex hull does, and the world reports a warning.
+// triangles themselves collide (both sides, unless they are one-sided); on a moving body their convex hull does, with
+// the collider's one material, and the world reports a warning.
 class TriangleMesh {
 public:
     // `indices` holds three per triangle. An empty mesh, an index out of range or a non-finite vertex gives
-    // ErrorCode::bad_mesh naming the index, and so do coordinates beyond 1e5 m; triangles without area are dropped.
-    // O(n log n).
-    static Result<TriangleMesh> from_triangles(std::span<const Vec3> vertices, std::span<const uint32_t> indices);
+    // ErrorCode::bad_mesh naming the index, and so do coordinates beyond 1e5 m and a list of materials of another
+    // length; triangles without area are dropped. O(n log n).
+    static Result<TriangleMesh> from_triangles(std::span<const Vec3> vertices, std::span<const uint32_t> indices,
+                                               const TriangleOptions& options = {});
 
     int triangle_count() const;
     std::span<const Vec3> vertices() const;  // those in use, each position once, local frame, m
     // Three indices into vertices() per triangle, in the order in which they were given.
     std::vector<uint32_t> triangles() const;
     int dropped_triangles() const;                      // how many had no area
+    int material(int triangle) const;                   // by its number as given; 0 where none was given
+    bool is_one_sided() const;                          // false for one that is not built
     bool is_built() const { return data_ != nullptr; }  // false for a default-constructed one, which no body accepts
     const MeshData& data() const { return *data_; }     // only where it is built
 
@@ -112,9 +127,48 @@ private:
     std::shared_ptr<const MeshData> data_;
 };
 
+// A grid of heights above the local x-z plane: row by row along z, each along x.
+struct HeightFieldDef {
+    int columns = 0, rows = 0;           // samples along x and along z, 2 .. 32769
+    std::span<const float> heights{};    // m; columns * rows of them, the one of column i and row k at k * columns + i
+    float cell_x = 1.0f, cell_z = 1.0f;  // distance of neighbouring samples, m
+    Vec3 origin{};                       // where column 0 and row 0 have their sample, at height 0; local frame, m
+    // One for each cell, (columns - 1) * (rows - 1) of them: not 0 where it is a hole. Empty: no holes.
+    std::span<const uint8_t> holes{};
+    // One for each cell, or one for each triangle (two a cell): see TriangleOptions. Empty: 0 for all.
+    std::span<const uint8_t> materials{};
+    bool one_sided = false;  // see TriangleOptions; fronts are above
+};
+
+// A surface over a grid, for terrain: what a mesh of the same triangles does, in a twentieth of its memory. On
+// static and kinematic bodies. Each cell, with corners a, b along x and c, d along x in the next row, is the triangles
+// (a, c, b) and (b, c, d), which have the numbers 2 n and 2 n + 1 for cell n, counted as the cells' lists are.
+class HeightField {
+public:
+    // ErrorCode::bad_mesh, naming the place, for: fewer than 2 samples a side or more than 2^29 cells; lists of another
+    // length; heights that are not finite or beyond 1e5 m; cells smaller than 1e-3 m or larger than 1e3 m, or one side
+    // more than 100 times the other; coordinates beyond 1e5 m, or beyond 65536 cells, where single precision no longer
+    // tells cells apart; neighbouring heights that differ by more than 1000 times the cell; nothing but holes. O(n).
+    static Result<HeightField> from_heights(const HeightFieldDef& def);
+
+    int columns() const;  // samples; 0 for one that is not built, as rows() and triangle_count()
+    int rows() const;
+    int triangle_count() const;               // without those of holes
+    int material(int triangle) const;         // by its number
+    bool is_hole(int column, int row) const;  // of a cell
+    std::vector<Vec3> vertices() const;       // all samples, local frame, m
+    std::vector<uint32_t> triangles() const;  // three indices into vertices() for each triangle that is not a hole's
+    bool is_one_sided() const;
+    bool is_built() const { return data_ != nullptr; }  // false for a default-constructed one, which no body accepts
+    const HeightFieldData& data() const { return *data_; }  // only where it is built
+
+private:
+    std::shared_ptr<const HeightFieldData> data_;
+};
+
 // Any of the shapes above.
 using Shape = std::variant<Sphere, Capsule, TaperedCapsule, Box, Cylinder, TaperedCylinder, Cone, ConvexHull, Plane,
-                           TriangleMesh>;
+                           TriangleMesh, HeightField>;
 
 // Mass, centre of mass and inertia of a solid.
 struct MassProperties {
@@ -125,8 +179,8 @@ struct MassProperties {
 
 // Exact mass properties of a shape of uniform density (kg/m^3), roundings included. The one approximation: a rounded
 // hull has its exact mass, but the centre of the sharp hull and the inertia of the sharp hull scaled to the rounded
-// extents. A plane has none (mass 0); a mesh counts as its convex hull, a flat mesh has none; nor has a shape that no
-// body accepts.
+// extents. A plane or height field has none (mass 0); a mesh counts as its convex hull, a flat mesh has none; nor has a
+// shape that no body accepts.
 MassProperties mass_properties(const Shape& shape, float density);
 
 }  // namespace lendulet

@@ -65,7 +65,8 @@ struct ContactPoint {
     float normal_impulse;  // of the last substep, N s
 };
 
-// A contact: up to four points with one normal.
+// A contact: up to four points with one normal. None at a seam of a floor that is made up of several pieces, where
+// another contact holds the body above this one.
 struct Contact {
     BodyId body_a, body_b;
     ColliderId collider_a, collider_b;
@@ -73,7 +74,7 @@ struct Contact {
     Vec3 friction_impulse;  // on B, of the last substep, N s
     int point_count;
     ContactPoint points[4];
-    int32_t triangle;  // index of the mesh triangle, -1 where none is involved
+    int32_t triangle;  // number of the mesh's or height field's triangle, -1 where none is involved
 };
 
 // Two colliders, one of them a trigger, that overlap.
@@ -223,7 +224,7 @@ public:
     Result<bool> overlap_any(const PosedShape& shape, const QueryFilter& filter = {}) const;
     // The same for a box along the world's axes, which may be flat.
     Result<int> overlap_box(const Aabb& box, std::span<Proximity> out, const QueryFilter& filter = {}) const;
-    // Every solid that holds the point, by id; meshes hold none.
+    // Every solid that holds the point, by id; meshes and height fields hold none.
     Result<int> overlap_point(Position point, std::span<Proximity> out, const QueryFilter& filter = {}) const;
 
     // --- whole-world figures

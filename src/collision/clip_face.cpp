@@ -1,6 +1,7 @@
 // Faces for contacts and their clipping (Sutherland, Hodgman 1974) in the plane of the reference face. Every corner of
 // the result keeps the names of the two features that meet there.
 #include "collision/clip.h"
+#include "collision/trace.h"
 
 namespace lendulet {
 namespace {
@@ -112,14 +113,9 @@ int sides_of(const Corner* corners, int count, float slack, Side* out) {
     return count;
 }
 
-}  // namespace
-
-void transform_face(const Transform& t, Face& face) {
-    for (int i = 0; i < face.count; ++i) face.vertices[i] = t * face.vertices[i];
-    face.normal = rotate(t.rotation, face.normal);
-}
-
-void clip_face(const Face& reference, const Face& incident, bool reference_is_b, float limit, ClippedFace& out) {
+template <class Observer>
+LENDULET_FORCE_INLINE void clip(const Face& reference, const Face& incident, bool reference_is_b, float limit,
+                                ClippedFace& out, Observer& observer) {
     Corner a[max_clipped_points], b[max_clipped_points];
     Side sides[max_face_vertices];
     out.count = 0;
@@ -142,14 +138,17 @@ void clip_face(const Face& reference, const Face& incident, bool reference_is_b,
     }
     Corner *from = a, *to = b;
     int count = incident.count;
+    observer.clip_start(b, reference.count, a, count);
     if (count == 2) {
         count = clip_segment(a, sides, reference, incident, b);
         from = b;
+        observer.clip_side(reference.count - 1, b, count);
     } else {
         for (int i = 0; i < side_count && count > 0; ++i) {
             count = clip_by_side(from, count, sides[i], i, reference, incident, to);
             Corner* swap = from;
             from = to, to = swap;
+            observer.clip_side(i, from, count);
         }
     }
     for (int i = 0; i < count; ++i) {
@@ -158,6 +157,23 @@ void clip_face(const Face& reference, const Face& incident, bool reference_is_b,
         uint32_t id = reference_is_b ? point_id(c.incident, c.reference) : point_id(c.reference, c.incident);
         out.points[out.count++] = {c.u, c.v, c.w, id};
     }
+}
+
+}  // namespace
+
+void transform_face(const Transform& t, Face& face) {
+    for (int i = 0; i < face.count; ++i) face.vertices[i] = t * face.vertices[i];
+    face.normal = rotate(t.rotation, face.normal);
+}
+
+void clip_face(const Face& reference, const Face& incident, bool reference_is_b, float limit, ClippedFace& out) {
+    SilentObserver silent;
+    clip(reference, incident, reference_is_b, limit, out, silent);
+}
+
+void clip_face(const Face& reference, const Face& incident, bool reference_is_b, float limit, ClippedFace& out,
+               Recorder& recorder) {
+    clip(reference, incident, reference_is_b, limit, out, recorder);
 }
 
 }  // namespace lendulet

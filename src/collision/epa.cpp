@@ -6,6 +6,7 @@
 #include "collision/gjk_newton.h"
 #include "collision/gjk_search.h"
 #include "collision/simplex.h"
+#include "collision/trace.h"
 
 namespace lendulet {
 namespace {
@@ -214,7 +215,8 @@ void foot_on_face(const CoreDifference& difference, const Polytope& polytope, in
 
 }  // namespace
 
-Penetration expand_polytope(const CoreDifference& difference, const Simplex& simplex, Vec3d hint) {
+template <class Observer>
+Penetration expand_polytope(const CoreDifference& difference, const Simplex& simplex, Vec3d hint, Observer& observer) {
     Penetration result;
     Simplex s = simplex;
     if (!make_tetrahedron(difference, s, hint, result)) return result;
@@ -227,6 +229,7 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
         int f = polytope.nearest_face();
         const Vec3d n = polytope.normal(f);
         DifferencePoint p = difference.support(n);
+        observer.polytope(polytope, f, p);
         double lower = polytope.distance(f, n), upper = dot(n, p.y), gap = upper - lower;
         smooth.look(difference, n, lower, gap);
         bool proven = smooth.found && smooth.tangency.height - lower <= surface_smooth * size;
@@ -244,6 +247,13 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
             result = {t.height, t.direction, t.p.y, snap_to_core(difference.a, to_double(t.p.a)), t.miss, expansions};
         return result;
     }
+}
+
+template Penetration expand_polytope(const CoreDifference&, const Simplex&, Vec3d, Recorder&);
+
+Penetration expand_polytope(const CoreDifference& difference, const Simplex& simplex, Vec3d hint) {
+    SilentObserver silent;
+    return expand_polytope(difference, simplex, hint, silent);
 }
 
 }  // namespace lendulet

@@ -4,6 +4,7 @@
 
 #include "collision/epa.h"
 #include "collision/gjk_search.h"
+#include "collision/trace.h"
 
 namespace lendulet {
 namespace {
@@ -54,26 +55,40 @@ ConvexDistance result_overlapping(const CoreDifference& difference, const Penetr
     return result;
 }
 
-}  // namespace
+// The observer's calls go to the untemplated functions where it is silent.
+Search search_as(SilentObserver&, const CoreDifference& d, Simplex& s, SimplexSolver method, double max_distance) {
+    return search(d, s, method, max_distance);
+}
+Search search_as(Recorder& r, const CoreDifference& d, Simplex& s, SimplexSolver method, double max_distance) {
+    return search(d, s, method, max_distance, r);
+}
+Penetration expand_as(SilentObserver&, const CoreDifference& d, const Simplex& s) {
+    return expand_polytope(d, s, d.centre());
+}
+Penetration expand_as(Recorder& r, const CoreDifference& d, const Simplex& s) {
+    return expand_polytope(d, s, d.centre(), r);
+}
 
-ConvexDistance distance(const ConvexPair& pair, GjkCache& cache, SimplexSolver method, float max_distance) {
+template <class Observer>
+LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCache& cache, SimplexSolver method,
+                                                 float max_distance, Observer& observer) {
     const CoreDifference difference(pair);
     Simplex s;
     start(difference, cache, s);
-    Search found = search(difference, s, method, max_distance);
+    Search found = search_as(observer, difference, s, method, max_distance);
     ConvexDistance result;
     // Rounding in slivers of simplices can end the search early or take the origin for enclosed. Neither goes
     // unnoticed: the bounds of the distance stay apart, or the depth comes out negative. The polytope then settles the
     // one, and a new search from its separating direction the other.
     bool doubtful = found.outcome == Outcome::apart && !(found.gap <= certified_distance * difference.size);
     if (found.outcome == Outcome::overlap || doubtful) {
-        Penetration deep = expand_polytope(difference, s, difference.centre());
+        Penetration deep = expand_as(observer, difference, s);
         result = result_overlapping(difference, deep, found.iterations);
         if (deep.depth < -certified_distance * difference.size) {
             s.count = 0;
             s.add(difference.support(deep.outward));
             int before = found.iterations;
-            found = search(difference, s, SimplexSolver::barycentric, max_distance);
+            found = search_as(observer, difference, s, SimplexSolver::barycentric, max_distance);
             result = result_apart(difference, s, found);
             result.iterations += before;
             result.expansions = deep.expansions;
@@ -83,6 +98,44 @@ ConvexDistance distance(const ConvexPair& pair, GjkCache& cache, SimplexSolver m
     }
     remember(s, result.normal, cache);
     return result;
+}
+
+#ifdef LENDULET_CERTIFICATES
+// Ends the program where an answer is not proven: apart, the gap between the supports along the normal bounds the
+// distance from below, and the nearest points, which come from points of the cores, bound it from above; overlapping,
+// the same gap is an upper bound of the depth. Nothing here depends on how the answer was found.
+void check_certificate(const CoreDifference& difference, const ConvexDistance& r, double max_distance) {
+    constexpr double distance_error = 2e-6, depth_error = 1e-5, witness_error = 4e-6;  // of S
+    const Vec3d n = to_double(r.normal), a = to_double(r.point_a), b = to_double(r.point_b);
+    const double size = difference.size, d = r.distance;
+    const double separation = dot(n, difference.support(-n).y);
+    bool proven = r.converged && absolute(length(n) - 1.0) <= 1e-6;
+    if (d > max_distance) {  // only that it is beyond
+        proven = proven && separation >= d - distance_error * size;
+    } else {
+        proven = proven && absolute(separation - d) <= (d >= 0.0 ? distance_error : depth_error) * size;
+        proven = proven && absolute(length(b - a) - absolute(d)) <= witness_error * size;
+        const double above_a = dot(n, a - support_point(difference.a, n));
+        proven = proven && above_a <= witness_error * size;
+    }
+    if (!proven) __builtin_trap();
+}
+#endif
+
+}  // namespace
+
+ConvexDistance distance(const ConvexPair& pair, GjkCache& cache, SimplexSolver method, float max_distance) {
+    SilentObserver silent;
+    ConvexDistance result = distance_of(pair, cache, method, max_distance, silent);
+#ifdef LENDULET_CERTIFICATES
+    check_certificate(CoreDifference(pair), result, max_distance);
+#endif
+    return result;
+}
+
+ConvexDistance distance(const ConvexPair& pair, GjkCache& cache, SimplexSolver method, float max_distance,
+                        Recorder& recorder) {
+    return distance_of(pair, cache, method, max_distance, recorder);
 }
 
 }  // namespace lendulet

@@ -5,6 +5,7 @@
 
 #include "collision/gjk_newton.h"
 #include "collision/simplex.h"
+#include "collision/trace.h"
 
 namespace lendulet {
 namespace {
@@ -66,7 +67,9 @@ Search end_at(const Search& found, Outcome outcome, double lower) {
 
 }  // namespace
 
-Search search(const CoreDifference& difference, Simplex& s, SimplexSolver method, double max_distance) {
+template <class Observer>
+Search search(const CoreDifference& difference, Simplex& s, SimplexSolver method, double max_distance,
+              Observer& observer) {
     const double size = difference.size;
     const double near_zero = touching * touching * size * size;
     const double relative = difference.curved ? relative_gap_curved : relative_gap;
@@ -80,9 +83,11 @@ Search search(const CoreDifference& difference, Simplex& s, SimplexSolver method
         keep_part(s, part);
         const Vec3d v = result.v = part.point;
         const double vv = dot(v, v);
+        observer.simplex(s, v);
         if (s.count == 4 || vv <= near_zero) return result;
 
         DifferencePoint p = difference.support(-v);
+        observer.support(p);
         const double vy = dot(v, p.y), gap = vv - vy;  // lower bound of the distance, and what is left, times |v|
         if (vy > 0.0 && vy * vy > limit * vv) return end_at(result, Outcome::beyond, vy);
         bool settled = !(gap > relative * vv) || gap * gap <= least_gap * least_gap * vv;
@@ -95,6 +100,13 @@ Search search(const CoreDifference& difference, Simplex& s, SimplexSolver method
         previous = vv;
         s.add(p);
     }
+}
+
+template Search search(const CoreDifference&, Simplex&, SimplexSolver, double, Recorder&);
+
+Search search(const CoreDifference& difference, Simplex& s, SimplexSolver method, double max_distance) {
+    SilentObserver silent;
+    return search(difference, s, method, max_distance, silent);
 }
 
 }  // namespace lendulet

@@ -26,5 +26,9 @@ struct Search {
 
 // Starts from the points in `s` (at least one) and leaves there those that the nearest point lies between.
 Search search(const CoreDifference& difference, Simplex& s, SimplexSolver method, double max_distance);
+// The same with an observer of trace.h, which is told each simplex and each support point.
+template <class Observer>
+Search search(const CoreDifference& difference, Simplex& s, SimplexSolver method, double max_distance,
+              Observer& observer);
 
 }  // namespace lendulet

@@ -22,7 +22,7 @@ struct Manifold {
     float radius_a = 0.0f, radius_b = 0.0f;
     // Which body the points ride on: 0 on A, 1 on B, 0.5 half way (two edges). A ball's point rides with the ball.
     float follow = 0.5f;
-    int32_t triangle = -1;  // original index of the mesh triangle, -1: none
+    int32_t triangle = -1;  // of a mesh or height field, as the user counts them, -1: none
     uint32_t key = 0;       // names the manifold among those of its pair (mesh triangles); 0 for convex pairs
 };
 

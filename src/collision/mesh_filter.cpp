@@ -54,6 +54,7 @@ void heights(const Geometry& g, const V (&d)[directions], F (&out)[directions]) 
         case GeometryKind::triangle:
         case GeometryKind::plane:
         case GeometryKind::mesh:
+        case GeometryKind::height_field:
             break;
     }
     for (int k = 0; k < directions; ++k) out[k] = F{};
@@ -88,9 +89,9 @@ auto meet(const Boxes& b, Vec3 box_lower, Vec3 box_upper) {
 
 }  // namespace
 
-MeshFilter::MeshFilter(const MeshData& mesh, const Geometry& shape, Quat turn, Vec3 position, Vec3 lower, Vec3 upper,
-                       Vec3 centre, float limit, float slack)
-    : mesh_(mesh),
+MeshFilter::MeshFilter(const TriangleSurface& surface, const Geometry& shape, Quat turn, Vec3 position, Vec3 lower,
+                       Vec3 upper, Vec3 centre, float limit, float slack)
+    : surface_(surface),
       shape_(shape),
       to_shape_(rotation_matrix(conjugate(turn))),
       position_(position),
@@ -110,10 +111,11 @@ MeshFilter::Result MeshFilter::test(const uint32_t* triangles, int count) const 
     float lean[lanes];                 // most that the direction of the shortest distance leans across a side, as sine
     for (int i = 0; i < lanes; ++i) {  // lanes beyond the last repeat the first
         uint32_t index = triangles[i < count ? i : 0];
-        const MeshTriangle& t = mesh_.triangles[index];
-        for (int k = 0; k < 3; ++k) corner[k].set(i, mesh_.vertices[t.vertex[k]]);
-        front.set(i, mesh_.normals[index]);
-        lean[i] = t.sharp_edges == 0 ? gentle_edge_sine : 1.0f;  // beyond it the neighbour is nearer
+        Vec3 corners[3];
+        surface_.corners(index, corners);
+        for (int k = 0; k < 3; ++k) corner[k].set(i, corners[k]);
+        front.set(i, surface_.normal(index));
+        lean[i] = surface_.sharp_edges(index) == 0 ? gentle_edge_sine : 1.0f;  // beyond it the neighbour is nearer
     }
     V p[3];
     for (int k = 0; k < 3; ++k) p[k] = corner[k].load() - splat<F>(position_);

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh.h"
+#include "geometry/triangle_surface.h"
 
 namespace lendulet {
 
@@ -17,7 +17,7 @@ public:
     // The shape at `position` with `turn` from its axes to those of the mesh; [lower, upper] its bounds, margin
     // included, and `centre` its centre, both relative to its position, mesh axes. Cores farther than `limit` from a
     // triangle do not matter, give or take `slack`.
-    MeshFilter(const MeshData& mesh, const Geometry& shape, Quat turn, Vec3 position, Vec3 lower, Vec3 upper,
+    MeshFilter(const TriangleSurface& surface, const Geometry& shape, Quat turn, Vec3 position, Vec3 lower, Vec3 upper,
                Vec3 centre, float limit, float slack);
 
     struct Result {
@@ -28,7 +28,7 @@ public:
     Result test(const uint32_t* triangles, int count) const;
 
 private:
-    const MeshData& mesh_;
+    const TriangleSurface& surface_;
     const Geometry& shape_;
     Mat3 to_shape_;                  // rows: the shape's axes in those of the mesh
     Vec3 position_, lower_, upper_;  // mesh frame

@@ -7,11 +7,12 @@ namespace {
 // less and its facets take many manifolds.
 constexpr float same_normal = 0.9995f;
 
-// A name for a face's normal that lasts while the shape slides from triangle to triangle: components in steps of 1/256,
-// finer than groups are apart. The normals of axis-aligned faces are in the middle of a step.
-uint32_t name_of_normal(Vec3 n) {
+// A name for a face's normal and material that lasts while the shape slides from triangle to triangle: components in
+// steps of 1/256, finer than groups are apart. The normals of axis-aligned faces are in the middle of a step.
+uint32_t name_of_face(Vec3 n, uint8_t material) {
     auto step = [](float x) { return static_cast<uint32_t>(static_cast<int>(x * 256.0f + 512.5f)); };
-    return (step(n.x) & 0x3ffu) | (step(n.y) & 0x3ffu) << 10 | (step(n.z) & 0x3ffu) << 20;
+    uint32_t normal = (step(n.x) & 0x3ffu) | (step(n.y) & 0x3ffu) << 10 | (step(n.z) & 0x3ffu) << 20;
+    return normal ^ ((material * 0x00841fefu) & 0x3fffffffu);
 }
 
 // Whether a point is a corner of the shape over any face.
@@ -42,7 +43,8 @@ void MeshManifolds::reduce(Group& group) {
 // The group with this normal, or a new one; null where there is no room and all others are deeper.
 MeshManifolds::Group* MeshManifolds::group_for(const TriangleContact& contact) {
     for (int i = 0; i < count_; ++i) {
-        if (dot(groups_[i].normal, contact.normal) > same_normal) return &groups_[i];
+        if (groups_[i].material == contact.material && dot(groups_[i].normal, contact.normal) > same_normal)
+            return &groups_[i];
     }
     float deepest = deepest_of(contact);
     Group* group = &groups_[0];
@@ -56,6 +58,7 @@ MeshManifolds::Group* MeshManifolds::group_for(const TriangleContact& contact) {
     }
     group->normal = contact.normal;
     group->face = contact.face;
+    group->material = contact.material;
     group->radius = contact.radius, group->follow = contact.follow;
     group->deepest = deepest;
     group->lowest_original = group->deepest_original = contact.original;
@@ -122,7 +125,7 @@ int MeshManifolds::write(Manifold* out, int capacity) {
         m.radius_b = group.radius;
         m.follow = group.follow;
         m.triangle = static_cast<int32_t>(group.deepest_original);
-        m.key = group.face ? name_of_normal(group.normal) : 0x80000000u | group.lowest_original;
+        m.key = group.face ? name_of_face(group.normal, group.material) : 0x80000000u | group.lowest_original;
     }
     return written;
 }

@@ -1,6 +1,6 @@
 // Contacts of a convex shape with many triangles, gathered into few manifolds: what neighbouring triangles of one plane
-// give becomes one manifold of at most four points. Bounded, on the stack; the result depends on the order in which
-// triangles come, which is that of the mesh's hierarchy.
+// give becomes one manifold of at most four points, where their material is one. Bounded, on the stack; the result
+// depends on the order in which triangles come, which is that of the mesh's hierarchy.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +24,7 @@ struct TriangleContact {
     bool face;    // the normal is that of the triangle
     float radius, follow;
     uint32_t original;  // the triangle
+    uint8_t material = 0;
     int count = 0;
     MeshPoint points[max_clipped_points];
 };
@@ -42,6 +43,7 @@ private:
     struct Group {
         Vec3 normal;
         bool face;
+        uint8_t material;
         float radius, follow, deepest;
         uint32_t lowest_original, deepest_original;
         int count;

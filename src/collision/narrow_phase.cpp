@@ -19,7 +19,7 @@ bool wants_swap(const CollidePair& p) {
 int collide_in_order(const CollidePair& p, PairCache& cache, const CollideSettings& settings, Manifold* out,
                      int capacity) {
     const Geometry &a = *p.a, &b = *p.b;
-    if (a.kind == GeometryKind::mesh) return collide_mesh_convex(p, settings, out, capacity);
+    if (has_triangles(a)) return collide_mesh_convex(p, settings, out, capacity);
     if (a.kind == GeometryKind::plane) return collide_plane_convex(p, *out);
     if (is_sharp_box(a) && is_sharp_box(b)) return collide_box_box(p, cache, settings, *out);
     if (is_ball(b)) {
@@ -57,7 +57,7 @@ bool overlap(const CollidePair& pair, PairCache& cache, const CollideSettings& s
     if (!is_convex(*pair.a) && !is_convex(*pair.b)) return false;
     CollidePair touching = wants_swap(pair) ? swapped(pair) : pair;
     touching.margin = 0.0f;
-    if (touching.a->kind == GeometryKind::mesh) return overlap_mesh_convex(touching, settings);
+    if (has_triangles(*touching.a)) return overlap_mesh_convex(touching, settings);
     Manifold manifold;
     return collide_in_order(touching, cache, settings, &manifold, 1) > 0;
 }

@@ -32,8 +32,9 @@ struct PairCache {
 };
 
 // Writes manifolds for the pair to `out` (room for `capacity`), returns how many there are. Convex pairs give at most
-// one; a convex shape against a mesh gives at most max_mesh_manifolds, the deepest first where there would be more.
-// Pairs of two meshes or planes give none. Order of a and b is the caller's: normals point from a to b.
+// one; a convex shape against a mesh or height field gives at most max_mesh_manifolds, the deepest first where there
+// would be more. Pairs of which neither is convex give none. Order of a and b is the caller's: normals point from a to
+// b.
 inline constexpr int max_mesh_manifolds = 16;
 int collide(const CollidePair& pair, PairCache& cache, const CollideSettings& settings, Manifold* out, int capacity);
 

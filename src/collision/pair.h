@@ -20,11 +20,11 @@ int collide_box_box(const CollidePair& pair, PairCache& cache, const CollideSett
 int collide_plane_convex(const CollidePair& pair, Manifold& out);
 // Any two convex shapes by GJK and EPA.
 int collide_convex_convex(const CollidePair& pair, PairCache& cache, const CollideSettings& settings, Manifold& out);
-// A mesh and any convex shape; the only function with room for more than one manifold.
+// A mesh or height field and any convex shape; the only function with room for more than one manifold.
 int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings, Manifold* out, int capacity);
 bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& settings);
 
-inline bool is_convex(const Geometry& g) { return g.kind != GeometryKind::plane && g.kind != GeometryKind::mesh; }
+inline bool is_convex(const Geometry& g) { return g.kind != GeometryKind::plane && !has_triangles(g); }
 
 // The same pair seen from B.
 inline CollidePair swapped(const CollidePair& p) { return {p.b, p.a, p.rotation_b, p.rotation_a, -p.offset, p.margin}; }

@@ -1,6 +1,6 @@
-// A mesh and a convex shape, triangle by triangle. Triangles are two-sided and push towards the side on which the
-// shape's centre is. Edges within a flat or hollow part of the surface must not be felt: a contact whose normal leans
-// across such an edge belongs to the neighbour, or gets the normal of the face.
+// A mesh or height field and a convex shape, triangle by triangle. Triangles push towards the side on which the
+// shape's centre is; one-sided ones to their front alone. Edges within a flat or hollow part of the surface must not be
+// felt: a contact whose normal leans across such an edge belongs to the neighbour, or gets the normal of the face.
 //
 // Faces come first: clipping the shape's face by the triangle often proves that the triangle's normal is the direction
 // of the shortest way out; only edges that can touch need GJK and EPA.
@@ -11,6 +11,7 @@
 #include "collision/pair.h"
 #include "collision/triangle.h"
 #include "geometry/hull.h"
+#include "geometry/triangle_surface.h"
 
 namespace lendulet {
 namespace {
@@ -28,7 +29,7 @@ constexpr float flat = 0.998f;
 struct MeshQuery {
     const CollidePair& pair;
     const CollideSettings& settings;
-    const MeshData& mesh;
+    TriangleSurface surface;
     const Geometry& shape;
     Quat turn;          // shape's frame to mesh axes
     Vec3 position;      // of the shape, mesh frame
@@ -51,7 +52,7 @@ MeshQuery make_query(const CollidePair& pair, const CollideSettings& settings) {
     Vec3 centre = pair.b->kind == GeometryKind::hull ? rotate(turn, pair.b->hull->centroid) : Vec3{};
     return {pair,
             settings,
-            *pair.a->mesh,
+            TriangleSurface(*pair.a),
             *pair.b,
             turn,
             rotate_inverse(pair.rotation_a, pair.offset),
@@ -67,7 +68,7 @@ MeshQuery make_query(const CollidePair& pair, const CollideSettings& settings) {
 // visit(triangle index, apart) for those that may come within `limit` of the core, in the order of the mesh.
 template <class Visit>
 void for_each_near(const MeshQuery& q, float limit, Visit&& visit) {
-    const MeshFilter filter(q.mesh, q.shape, q.turn, q.position, q.lower, q.upper, q.centre, limit, level * q.size);
+    const MeshFilter filter(q.surface, q.shape, q.turn, q.position, q.lower, q.upper, q.centre, limit, level * q.size);
     uint32_t waiting[MeshFilter::lanes];
     int count = 0;
     auto flush = [&] {
@@ -78,7 +79,7 @@ void for_each_near(const MeshQuery& q, float limit, Visit&& visit) {
         }
         count = 0;
     };
-    for_each_triangle(q.mesh, q.position + q.lower, q.position + q.upper, [&](uint32_t index) {
+    for_each_triangle(q.surface, q.position + q.lower, q.position + q.upper, [&](uint32_t index) {
         waiting[count++] = index;
         if (count == MeshFilter::lanes) flush();
     });
@@ -148,15 +149,14 @@ bool over(const Triangle& t, Vec3 p) {
 
 // The part of the shape's face over the triangle, and its lowest point where that is over it and below the face.
 void clip_to_triangle(const MeshQuery& q, const Triangle& t, ClippedFace& clipped) {
-    const MeshTriangle& names = q.mesh.triangles[t.index];
-    clip_face(face_of(t, names), q.face, false, q.pair.margin + q.shape.rounding, clipped);
+    clip_face(face_of(t, q.surface), q.face, false, q.pair.margin + q.shape.rounding, clipped);
     Vec3 tip = q.lowest - clipped.origin;
     float height = dot(tip, t.normal), deepest = 3e38f;
     for (int i = 0; i < clipped.count; ++i) {
         FacePoint& p = clipped.points[i];
         deepest = minimum(deepest, p.separation);
         // A corner of the shape has the same name over every triangle, so that it keeps it while it slides.
-        if (p.id >> 16 == face_feature(names.original)) p.id = point_id(face_feature(0), p.id & 0xffffu);
+        if (p.id >> 16 == face_feature(t.original)) p.id = point_id(face_feature(0), p.id & 0xffffu);
     }
     if (height < deepest - 10.0f * level * q.size && over(t, q.lowest)) {
         uint32_t id = point_id(face_feature(0), face_feature(q.face.id));
@@ -221,11 +221,10 @@ ConvexDistance distance_to(const MeshQuery& q, const Triangle& t, float limit) {
 // Behind a closed surface's side, whose neighbour across one of these edges the shape's centre is in front of: the
 // neighbour pushes out, and pushing deeper in would be wrong.
 bool neighbour_pushes(const MeshQuery& q, const Triangle& t, uint8_t edges) {
-    const MeshTriangle& mesh_triangle = q.mesh.triangles[t.index];
     for (int i = 0; i < 3; ++i) {
-        int32_t neighbour = mesh_triangle.neighbour[i];
+        int32_t neighbour = q.surface.neighbour(t.index, i);
         if (!((edges & t.bent) >> i & 1) || neighbour < 0) continue;
-        float height = dot(q.mesh.normals[static_cast<uint32_t>(neighbour)], q.centre - t.vertices[i]);
+        float height = dot(q.surface.normal(static_cast<uint32_t>(neighbour)), q.centre - t.vertices[i]);
         if (t.from_behind ? height > 0.0f : height < 0.0f) return true;
     }
     return false;
@@ -235,7 +234,7 @@ bool neighbour_pushes(const MeshQuery& q, const Triangle& t, uint8_t edges) {
 bool on_shape_face(const MeshQuery& q, const Triangle& t, const Face& face, TriangleContact& out) {
     ClippedFace clipped;
     float radius = q.shape.rounding;
-    clip_face(face, face_of(t, q.mesh.triangles[t.index]), true, q.pair.margin + radius, clipped);
+    clip_face(face, face_of(t, q.surface), true, q.pair.margin + radius, clipped);
     if (clipped.count == 0) return false;
     start(t, -clipped.normal, false, radius, 0.0f, out);
     for (int i = 0; i < clipped.count; ++i) {
@@ -311,10 +310,12 @@ void convex_triangle(MeshQuery& q, const Triangle& t, bool apart, TriangleContac
 int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings, Manifold* out, int capacity) {
     MeshQuery q = make_query(pair, settings);
     MeshManifolds manifolds(10.0f * level * q.size);
-    bool ball = pair.b->kind == GeometryKind::point;
+    const bool ball = pair.b->kind == GeometryKind::point, one_sided = q.surface.one_sided();
     for_each_near(q, pair.margin + q.shape.rounding, [&](uint32_t index, bool apart) {
-        Triangle t = make_triangle(q.mesh, index, q.position, q.centre);
+        Triangle t = make_triangle(q.surface, index, q.position, q.centre);
+        if (t.from_behind && one_sided) return;
         TriangleContact contact;
+        contact.material = q.surface.material(t.original);
         if (ball) sphere_triangle(q, t, contact);
         else convex_triangle(q, t, apart, contact);
         manifolds.add(contact);
@@ -335,7 +336,7 @@ bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& setting
     bool touching = false;
     for_each_near(q, q.shape.rounding, [&](uint32_t index, bool apart) {
         if (touching || apart) return;
-        Triangle t = make_triangle(q.mesh, index, q.position, q.centre);
+        Triangle t = make_triangle(q.surface, index, q.position, q.centre);
         float radius = q.shape.rounding;
         touching = pair.b->kind == GeometryKind::point ? length(nearest_on_triangle(t.vertices, {}).point) <= radius
                                                        : distance_to(q, t, radius).distance <= radius;

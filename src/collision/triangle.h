@@ -1,19 +1,19 @@
-// A mesh triangle while a convex shape is collided with it: in the mesh's axes, relative to the position of the shape,
-// and seen from the side on which the shape's centre is.
+// A triangle of a mesh or height field while a convex shape is collided with it: in the mesh's axes, relative to the
+// position of the shape, and seen from the side on which the shape's centre is.
 #pragma once
 
 #include <cstdint>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh.h"
+#include "geometry/triangle_surface.h"
 
 namespace lendulet {
 
 struct Triangle {
-    Vec3 vertices[3];   // in the order of the mesh
+    Vec3 vertices[3];   // in the order of the surface
     Vec3 normal;        // unit, towards the shape's centre
     Vec3 out[3];        // unit, in the plane, out across edge i = (vertex i, vertex i + 1)
-    uint32_t index;     // in the mesh
+    uint32_t index;     // in the surface
     uint32_t original;  // in the user's list
     uint8_t touching;   // bit i: edge i can touch a shape on this side: the surface bends away, or ends
     uint8_t bent;       // bit i: edge i is not flat
@@ -22,18 +22,19 @@ struct Triangle {
 };
 
 // `position` is that of the shape and `centre` its centre relative to that, mesh axes.
-inline Triangle make_triangle(const MeshData& mesh, uint32_t index, Vec3 position, Vec3 centre) {
-    const MeshTriangle& t = mesh.triangles[index];
+inline Triangle make_triangle(const TriangleSurface& surface, uint32_t index, Vec3 position, Vec3 centre) {
     Triangle r;
-    for (int i = 0; i < 3; ++i) r.vertices[i] = mesh.vertices[t.vertex[i]] - position;
-    Vec3 front = mesh.normals[index];
+    surface.corners(index, r.vertices);
+    for (Vec3& v : r.vertices) v -= position;
+    Vec3 front = surface.normal(index);
     r.from_behind = dot(front, centre - r.vertices[0]) < 0.0f;
     r.normal = r.from_behind ? -front : front;
     r.index = index;
-    r.original = t.original;
-    r.touching = r.from_behind ? t.concave_edges : t.convex_edges;
-    r.bent = t.convex_edges | t.concave_edges;
-    r.sharp = t.sharp_edges;
+    r.original = surface.original(index);
+    const uint8_t convex = surface.convex_edges(index), concave = surface.concave_edges(index);
+    r.touching = r.from_behind ? concave : convex;
+    r.bent = convex | concave;
+    r.sharp = surface.sharp_edges(index);
     return r;
 }
 
@@ -44,13 +45,13 @@ inline Vec3 out_across(const Triangle& t, int i) {
 }
 
 // As a face to clip with: counter-clockwise about the normal.
-inline Face face_of(const Triangle& t, const MeshTriangle& names) {
+inline Face face_of(const Triangle& t, const TriangleSurface& surface) {
     Face face;
     face.count = 3;
     for (int i = 0; i < 3; ++i) {
         int k = t.from_behind ? 2 - i : i;
         face.vertices[i] = t.vertices[k];
-        face.ids[i] = static_cast<uint16_t>(names.vertex[k]);
+        face.ids[i] = static_cast<uint16_t>(surface.vertex(t.index, k));
     }
     face.normal = t.normal;
     face.id = static_cast<uint16_t>(t.original);

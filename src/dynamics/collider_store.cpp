@@ -41,7 +41,7 @@ uint32_t ColliderStore::add() {
     surface.resize(n, Surface{});
     info.resize(n);
     place.resize(n);
-    if (shape.size() < n) shape.resize(n), given.resize(n);
+    if (shape.size() < n) shape.resize(n), given.resize(n), materials.resize(n);
     info[slot] = {};
     return slot;
 }

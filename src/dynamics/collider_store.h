@@ -53,8 +53,9 @@ struct ColliderStore {
     Array<Surface> surface;
     Array<ColliderInfo> info;
     Array<ColliderPlace> place;
-    std::vector<Shape> shape;      // as given, keeps shared hulls and meshes alive
-    std::vector<Transform> given;  // as given, in the user's body frame
+    std::vector<std::vector<Surface>> materials;  // of triangles; empty: all have `surface`
+    std::vector<Shape> shape;                     // as given, keeps shared hulls and meshes alive
+    std::vector<Transform> given;                 // as given, in the user's body frame
 
     ColliderStore(const Memory* memory, uint32_t world)
         : slots(memory, world), geometry(memory), local(memory), surface(memory), info(memory), place(memory) {}

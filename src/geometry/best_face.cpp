@@ -206,6 +206,7 @@ Face best_face(const Geometry& g, Vec3 direction) {
             break;
         case GeometryKind::plane:
         case GeometryKind::mesh:
+        case GeometryKind::height_field:
             break;
     }
     return face;

@@ -24,6 +24,7 @@ enum class GeometryKind : uint8_t {
     triangle,  // flat core of the three points at `triangle`; made for a moment while a mesh is collided
     plane,     // size = unit normal, rounding = 0, offset
     mesh,
+    height_field,
 };
 
 struct Geometry {
@@ -33,15 +34,21 @@ struct Geometry {
     float offset = 0.0f;             // plane: dot(normal, p) <= offset is solid
     const HullData* hull = nullptr;  // hull; for a mesh: its convex hull (null where it is flat)
     const MeshData* mesh = nullptr;
+    const HeightFieldData* field = nullptr;
     const Vec3* triangle = nullptr;
 };
 
+// Whether it is a surface of triangles.
+inline bool has_triangles(const Geometry& g) {
+    return g.kind == GeometryKind::mesh || g.kind == GeometryKind::height_field;
+}
+
 // Checks sizes and gives the geometry, or bad_extent / non_finite / degenerate_hull / bad_mesh with a sentence. The
-// geometry points into the hull or mesh of `shape`, which must outlive it.
+// geometry points into the hull, mesh or height field of `shape`, which must outlive it.
 Result<Geometry> make_geometry(const Shape& shape);
 
 // Farthest point of the core along `direction` (any length; ties to the first in a fixed order), local frame. Not for
-// planes and meshes (these give the origin).
+// planes and surfaces of triangles (these give the origin).
 Vec3 support_core(const Geometry& g, Vec3 direction);
 
 // Box of the whole shape (rounding included) relative to the position of a body whose orientation is `rotation`, as
@@ -56,7 +63,8 @@ float bounding_radius(const Geometry& g);
 
 // The inner core of a convex shape: a smaller shape inside it, all of whose surface lies `depth` or more below the
 // outer one (about, where the shape is tapered). What moves less than that within a step cannot carry its inner core
-// across a surface that it did not touch before. Planes and meshes have none (depth 0, the geometry itself).
+// across a surface that it did not touch before. Planes and surfaces of triangles have none (depth 0,
+// the geometry itself).
 struct InnerCore {
     Geometry geometry;
     float depth;  // m
@@ -66,7 +74,7 @@ InnerCore inner_core(const Geometry& g);
 // A face of the core that the direction looks at best: up to `max_face_vertices` points on the core's surface in order
 // around it, counter-clockwise seen from outside, local frame. Curved faces are given by points on them: the cap of a
 // cylinder by 16 points of its rim, its side by the two ends of the line nearest to the direction. Rounded ends, rims
-// and tips give one point, segments and sides two. Planes and meshes give none. (thesis 4.3.1)
+// and tips give one point, segments and sides two. Planes and surfaces of triangles give none. (thesis 4.3.1)
 inline constexpr int max_face_vertices = 32;
 struct Face {
     int count = 0;

@@ -155,6 +155,11 @@ Result<Geometry> convert(const TriangleMesh& s) {
     return Geometry{.kind = GeometryKind::mesh, .hull = s.data().hull.get(), .mesh = &s.data()};
 }
 
+Result<Geometry> convert(const HeightField& s) {
+    if (!s.is_built()) return Error{ErrorCode::bad_mesh, "HeightField: it was not built by from_heights."};
+    return Geometry{.kind = GeometryKind::height_field, .field = &s.data()};
+}
+
 }  // namespace
 
 Result<Geometry> make_geometry(const Shape& shape) {

@@ -175,6 +175,7 @@ MassProperties mass_properties(const Geometry& g, float density) {
             return g.hull ? rounded_hull(*g.hull, 0.0, density) : MassProperties{};
         case GeometryKind::triangle:
         case GeometryKind::plane:
+        case GeometryKind::height_field:
             break;
     }
     return {};

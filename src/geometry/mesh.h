@@ -23,8 +23,8 @@ struct MeshTriangle {
     // Bit i: the same for what is behind the triangle. Neither bit is set where the neighbour continues the triangle
     // within `flat_edge_sine`.
     uint8_t concave_edges;
-    uint8_t
-        sharp_edges;  // bit i: edge i bends to either side by more than `gentle_edge_sine`, or has no unique neighbour
+    // Bit i: edge i bends to either side by more than `gentle_edge_sine`, or there is no unique neighbour.
+    uint8_t sharp_edges;
 };
 
 // Edges that bend by less than this (as sine of the angle, 0.57 degrees) do not touch on their own: the normals of the
@@ -33,6 +33,16 @@ inline constexpr float flat_edge_sine = 0.01f;
 // What touches an edge that bends by less than this (12 degrees), and is not round, touches both faces nearly as deep:
 // the two faces stand for the edge, and no closest points are sought. Rolling terrain has such edges only.
 inline constexpr float gentle_edge_sine = 0.2f;
+
+// Unit normal of a triangle, or the zero vector where it has no area.
+Vec3 normal_of_triangle(Vec3 a, Vec3 b, Vec3 c);
+
+// How a surface goes on across the edge from a to b of a triangle with the unit normal given, into a neighbour with the
+// corner `far` opposite to that edge.
+struct EdgeBend {
+    bool touches_front, touches_back, sharp;  // see MeshTriangle
+};
+EdgeBend bend_across(Vec3 a, Vec3 b, Vec3 far, Vec3 normal, Vec3 neighbour_normal);
 
 struct alignas(64) MeshNode {
     float lower[3][8], upper[3][8];
@@ -47,10 +57,14 @@ struct MeshData {
     std::vector<Vec3> vertices;           // those in use, each position once
     std::vector<MeshTriangle> triangles;  // in the order of the hierarchy's leaves
     std::vector<Vec3> normals;            // unit, one a triangle
+    std::vector<uint32_t> place;          // by number in the user's list: in `triangles`; of those without area: 0
     std::vector<MeshNode> nodes;          // [0] is the root
     Vec3 lower, upper;
     float radius = 0.0f;  // largest distance of a vertex from the local origin
     int dropped = 0;
+    bool one_sided = false;
+    uint8_t most_material = 0;
+    std::vector<uint8_t> materials;        // by number in the user's list; empty: all 0
     std::shared_ptr<const HullData> hull;  // null where the vertices are flat
 };
 

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "geometry/geometry.h"
+#include "geometry/height_field.h"
 #include "geometry/hull.h"
 #include "geometry/mesh.h"
 
@@ -101,6 +102,10 @@ CentredBox core_bounds(const Geometry& g, Quat rotation) {
             CentredBox box = from_limits(g.mesh->lower, g.mesh->upper);
             return {r * box.centre, turned_half(r, box.half)};
         }
+        case GeometryKind::height_field: {
+            CentredBox box = from_limits(g.field->lower, g.field->upper);
+            return {r * box.centre, turned_half(r, box.half)};
+        }
     }
     return {};
 }
@@ -125,6 +130,7 @@ Vec3 support_core(const Geometry& g, Vec3 d) {
         case GeometryKind::point:
         case GeometryKind::plane:
         case GeometryKind::mesh:
+        case GeometryKind::height_field:
             break;
     }
     return {};
@@ -157,6 +163,8 @@ float bounding_radius(const Geometry& g) {
             return infinity;
         case GeometryKind::mesh:
             return g.mesh->radius;
+        case GeometryKind::height_field:
+            return g.field->radius;
     }
     return infinity;
 }

@@ -23,13 +23,17 @@ Vec3 to_float(Vec3d v) { return {static_cast<float>(v.x), static_cast<float>(v.y
 
 Error error(const std::string& text) { return {ErrorCode::bad_mesh, "TriangleMesh: " + text}; }
 
-Error check(std::span<const Vec3> vertices, std::span<const uint32_t> indices) {
+Error check(std::span<const Vec3> vertices, std::span<const uint32_t> indices, const TriangleOptions& options) {
     if (indices.empty()) return error("there are no triangles.");
     if (indices.size() % 3 != 0) {
         return error("there must be three indices for each triangle, but there are " + std::to_string(indices.size()) +
                      ".");
     }
     if (indices.size() / 3 > 0x3fffffff) return error("there are more than 2^30 triangles.");
+    if (!options.materials.empty() && options.materials.size() != indices.size() / 3) {
+        return error("there must be a material for each of the " + std::to_string(indices.size() / 3) +
+                     " triangles, but there are " + std::to_string(options.materials.size()) + ".");
+    }
     for (size_t i = 0; i < vertices.size(); ++i) {
         Vec3 zero = vertices[i] - vertices[i];
         if (!(zero == Vec3{})) return error("vertex " + std::to_string(i) + " is not finite.");
@@ -116,25 +120,18 @@ void make_hierarchy(MeshData& mesh) {
     }
     mesh.triangles.swap(triangles);
     mesh.normals.swap(normals);
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.place[mesh.triangles[i].original] = i;
 }
 
-// How the surface goes on across edge k of triangle t into triangle n: the height of n's far corner over t's plane
-// decides. A neighbour that folds back onto the triangle makes the edge a border to both sides.
 void classify_edge(MeshData& mesh, uint32_t t, uint32_t k, uint32_t n, uint32_t far_corner) {
     MeshTriangle& triangle = mesh.triangles[t];
     triangle.neighbour[k] = static_cast<int32_t>(n);
-    Vec3d a = to_double(mesh.vertices[triangle.vertex[k]]);
-    Vec3d edge = to_double(mesh.vertices[triangle.vertex[(k + 1) % 3]]) - a;
-    Vec3d far = to_double(mesh.vertices[mesh.triangles[n].vertex[far_corner]]) - a;
-    Vec3d normal = to_double(mesh.normals[t]), across = far - (dot(far, edge) / dot(edge, edge)) * edge;
-    double height = dot(normal, across), reach = __builtin_sqrt(dot(across, across));
-    bool folded = dot(normal, to_double(mesh.normals[n])) < 0.0;
+    EdgeBend bend = bend_across(mesh.vertices[triangle.vertex[k]], mesh.vertices[triangle.vertex[(k + 1) % 3]],
+                                mesh.vertices[mesh.triangles[n].vertex[far_corner]], mesh.normals[t], mesh.normals[n]);
     auto cleared = static_cast<uint8_t>(~(1u << k));
-    bool rises = height > flat_edge_sine * reach, falls = height < -flat_edge_sine * reach;
-    if (rises || (!falls && !folded)) triangle.convex_edges &= cleared;
-    if (falls || (!rises && !folded)) triangle.concave_edges &= cleared;
-    bool gentle = height <= gentle_edge_sine * reach && height >= -gentle_edge_sine * reach;
-    if (gentle && !folded) triangle.sharp_edges &= cleared;
+    if (!bend.touches_front) triangle.convex_edges &= cleared;
+    if (!bend.touches_back) triangle.concave_edges &= cleared;
+    if (!bend.sharp) triangle.sharp_edges &= cleared;
 }
 
 // Two triangles are neighbours where exactly these two share an edge and run along it in opposite directions.
@@ -176,12 +173,34 @@ void set_extent(MeshData& mesh) {
 
 }  // namespace
 
-Result<TriangleMesh> TriangleMesh::from_triangles(std::span<const Vec3> vertices, std::span<const uint32_t> indices) {
-    Error refused = check(vertices, indices);
+// The height of the neighbour's far corner over the triangle's plane decides. A neighbour that folds back onto the
+// triangle makes the edge a border to both sides.
+EdgeBend bend_across(Vec3 from, Vec3 to, Vec3 far, Vec3 normal, Vec3 neighbour_normal) {
+    Vec3d a = to_double(from), edge = to_double(to) - a, out = to_double(far) - a, n = to_double(normal);
+    Vec3d across = out - (dot(out, edge) / dot(edge, edge)) * edge;
+    double height = dot(n, across), reach = __builtin_sqrt(dot(across, across));
+    bool folded = dot(n, to_double(neighbour_normal)) < 0.0;
+    bool rises = height > flat_edge_sine * reach, falls = height < -flat_edge_sine * reach;
+    bool gentle = height <= gentle_edge_sine * reach && height >= -gentle_edge_sine * reach;
+    return {falls || (folded && !rises), rises || (folded && !falls), folded || !gentle};
+}
+
+Vec3 normal_of_triangle(Vec3 a, Vec3 b, Vec3 c) {
+    Vec3d n = area_normal(a, b, c);
+    return dot(n, n) == 0.0 ? Vec3{} : normalize(to_float(n));
+}
+
+Result<TriangleMesh> TriangleMesh::from_triangles(std::span<const Vec3> vertices, std::span<const uint32_t> indices,
+                                                  const TriangleOptions& options) {
+    Error refused = check(vertices, indices, options);
     if (!refused.message.empty()) return refused;
     auto data = std::make_shared<MeshData>();
+    data->one_sided = options.one_sided;
+    data->materials.assign(options.materials.begin(), options.materials.end());
+    for (uint8_t m : data->materials) data->most_material = m > data->most_material ? m : data->most_material;
     add_triangles(*data, vertices, indices);
     if (data->triangles.empty()) return error("none of its triangles has any area.");
+    data->place.assign(indices.size() / 3, 0);
     make_hierarchy(*data);
     find_neighbours(*data);
     set_extent(*data);
@@ -212,6 +231,13 @@ std::vector<uint32_t> TriangleMesh::triangles() const {
     for (uint32_t i : place) indices.insert(indices.end(), data_->triangles[i].vertex, data_->triangles[i].vertex + 3);
     return indices;
 }
+
+int TriangleMesh::material(int triangle) const {
+    auto i = static_cast<size_t>(triangle);
+    return data_ && triangle >= 0 && i < data_->materials.size() ? data_->materials[i] : 0;
+}
+
+bool TriangleMesh::is_one_sided() const { return data_ && data_->one_sided; }
 
 int TriangleMesh::dropped_triangles() const { return data_ ? data_->dropped : 0; }
 

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "geometry/mass.h"
+#include "geometry/triangle_surface.h"
 #include "world/validate.h"
 #include "world/world_data.h"
 
@@ -16,6 +17,7 @@ struct CheckedCollider {
     Geometry geometry;
     ColliderDef def;
     Surface surface;
+    std::vector<Surface> materials;
 };
 
 Error refused(ErrorCode code, const char* call, std::string what) {
@@ -41,10 +43,30 @@ Result<Surface> make_surface(const WorldConfig& config, const Material& m, const
     return Surface{fixed.value(), sliding.value(), bounce.value(), m.friction_combine, m.restitution_combine};
 }
 
+// The table of materials that a collider's triangles choose from.
+Result<std::vector<Surface>> make_materials(const WorldConfig& config, const ColliderDef& def, const Geometry& g,
+                                            const char* call) {
+    std::vector<Surface> table;
+    if (def.materials.empty()) return table;
+    if (!has_triangles(g))
+        return refused(ErrorCode::bad_material, call, "only meshes and height fields have a table of materials");
+    const int most = TriangleSurface(g).most_material();
+    if (def.materials.size() <= static_cast<size_t>(most))
+        return refused(ErrorCode::bad_material, call,
+                       "a triangle has material " + std::to_string(most) + ", but the table has only " +
+                           std::to_string(def.materials.size()));
+    for (const Material& m : def.materials) {
+        Result<Surface> surface = make_surface(config, m, call);
+        if (!surface) return surface.error();
+        table.push_back(surface.value());
+    }
+    return table;
+}
+
 Result<CheckedCollider> check_collider(WorldData& world, const ColliderDef& def, bool moves, const char* call) {
     Result<Geometry> geometry = make_geometry(def.shape);
     if (!geometry) return refused(geometry.error().code, call, geometry.error().message);
-    CheckedCollider c{geometry.value(), def, {}};
+    CheckedCollider c{geometry.value(), def, {}, {}};
     if (!is_finite(def.local.translation))
         return refused(ErrorCode::non_finite, call, "the collider's local position must be finite");
     Result<Quat> q = unit_quaternion(def.local.rotation, call);
@@ -55,6 +77,11 @@ Result<CheckedCollider> check_collider(WorldData& world, const ColliderDef& def,
     Result<Surface> surface = make_surface(world.config, def.material, call);
     if (!surface) return surface.error();
     c.surface = surface.value();
+    Result<std::vector<Surface>> materials = make_materials(world.config, def, c.geometry, call);
+    if (!materials) return materials.error();
+    c.materials = std::move(materials).value();
+    if (moves && c.geometry.kind == GeometryKind::height_field)
+        return refused(ErrorCode::shape_not_dynamic, call, "a height field cannot be on a moving body");
     if (moves && c.geometry.kind == GeometryKind::plane)
         return refused(ErrorCode::shape_not_dynamic, call, "a plane cannot be on a moving body");
     if (moves && c.geometry.kind == GeometryKind::mesh) {
@@ -63,6 +90,7 @@ Result<CheckedCollider> check_collider(WorldData& world, const ColliderDef& def,
                            "a flat mesh has no hull to collide as on a moving body");
         c.geometry.kind = GeometryKind::hull;
         c.geometry.mesh = nullptr;
+        c.materials.clear();
     }
     return c;
 }
@@ -152,6 +180,7 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
         if (!ci.is_trigger) info.depth = minimum(info.depth, ci.depth);
         world.colliders.geometry[slot] = c.geometry;
         world.colliders.surface[slot] = c.surface;
+        world.colliders.materials[slot] = std::move(c.materials);
         world.colliders.given[slot] = c.def.local;
         world.colliders.local[slot] = to_principal * c.def.local;
         world.colliders.shape[slot] = std::move(c.def.shape);
@@ -295,7 +324,8 @@ Status World::remove_body(BodyId id) {
             forget_pair(world, number);
         });
         remove_box(world, c);
-        world.colliders.shape[c] = Sphere{};  // lets go of shared hulls and meshes
+        world.colliders.shape[c] = Sphere{};  // lets go of shared hulls, meshes and height fields
+        world.colliders.materials[c].clear();
         world.colliders.info[c].body = no_slot;
         world.colliders.info[c].boxed = false;
         world.query_scene.changed(c);

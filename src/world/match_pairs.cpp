@@ -52,7 +52,7 @@ uint32_t begin_pair(WorldData& world, const BoxPair& colliders) {
         p.kind = PairKind::trigger;
         return number;
     }
-    world.pairs.place_records(p, a.kind == GeometryKind::mesh || b.kind == GeometryKind::mesh);
+    world.pairs.place_records(p, has_triangles(a) || has_triangles(b));
     p.kind = p.flipped ? kind_of(b, a) : kind_of(a, b);
     return number;
 }

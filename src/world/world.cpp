@@ -175,11 +175,11 @@ Contact World::contact(int index) const {
     c.collider_b = world.colliders.id(b);
     c.normal = {r.normal[0], r.normal[1], r.normal[2]};
     c.friction_impulse = {r.friction_impulse[0], r.friction_impulse[1], r.friction_impulse[2]};
-    c.point_count = r.point_count;
+    c.point_count = r.points[0].separation == far_separation ? 0 : r.point_count;  // see seams.cpp
     c.triangle = r.triangle;
     // The points were found at the start of the step; they ride with the body that they belong to.
     Position origin = world.bodies.pose[body_b].position - Vec3{r.arm_offset[0], r.arm_offset[1], r.arm_offset[2]};
-    for (int j = 0; j < r.point_count; ++j) {
+    for (int j = 0; j < c.point_count; ++j) {
         const ContactPointRecord& q = r.points[j];
         c.points[j] = {origin + Vec3{q.position[0], q.position[1], q.position[2]}, q.separation, r.normal_impulse[j]};
     }

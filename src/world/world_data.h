@@ -195,6 +195,7 @@ void update_bounds(WorldData& world, float dt);
 void find_box_pairs(WorldData& world);
 void match_pairs(WorldData& world);
 void find_contacts(WorldData& world, float dt);
+void silence_seams(WorldData& world);
 void update_islands(WorldData& world, float dt);
 void find_joint_groups(WorldData& world);
 void choose_substeps(WorldData& world, float dt);

@@ -85,6 +85,30 @@ TEST(Bench, BadSceneOptionsAreOneSentence) {
     expect_refused({"scenes", "--csv", "/no/such/directory/x"}, "/no/such/directory/x");
 }
 
+TEST(Bench, CollisionWritesTableAndCsv) {
+    std::string csv = scratch("collision.csv");
+    Outcome outcome = lendulet(
+        {"bench", "collision", "--pairs", "40", "--rays", "200", "--bodies", "30", "--repeats", "1", "--csv", csv});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+    std::string text = content(csv);
+    EXPECT_EQ(text.rfind("routine,case,median_ns,worst_error,failures\n", 0), 0u) << text;
+    EXPECT_EQ(std::count(text.begin(), text.end(), ','), 4 * std::count(text.begin(), text.end(), '\n')) << text;
+    for (const char* row :
+         {"lendulet distance; half-space,box-box near,", "lendulet distance; barycentric,hull32 deep,",
+          "lendulet distance; half-space; warm,box-box far,", "lendulet manifold; width 8,box-box deep,",
+          "lendulet manifold; single,capsule-capsule,", "lendulet manifold; single,box-height_field,",
+          "lendulet cast_rays,ray; pile of 30,"})
+        EXPECT_NE(text.find(std::string("\n") + row), std::string::npos) << row << text;
+}
+
+TEST(Bench, BadCollisionOptionsAreOneSentence) {
+    expect_refused({"collision", "--pairs", "3"}, "--pairs must be 16 to 1000000");
+    expect_refused({"collision", "--rays", "0"}, "--rays must be 1 to 10000000");
+    expect_refused({"collision", "--bodies", "-1"}, "--bodies must be 1 to 100000");
+    expect_refused({"collision", "--repeats", "0"}, "--repeats must be 1 to 1000");
+    expect_refused({"collision", "--csv", "/no/such/directory/x"}, "/no/such/directory/x");
+}
+
 // A wrong name of the second file must not have emptied the first.
 TEST(Bench, NothingIsWrittenWhereAnOptionIsRefused) {
     std::string csv = scratch("kept.csv");

@@ -58,8 +58,9 @@ TEST_P(Determinism, EverySteppedWorldHashesDifferently) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Determinism,
-                         testing::Values("box_pile:200", "mixed_pile:200", "ragdolls:4", "mesh_terrain:60", "tumbler:4",
-                                         "newtons_cradle", "stack:50", "mass_ratio:1000"),
+                         testing::Values("box_pile:200", "mixed_pile:200", "ragdolls:4", "mesh_terrain:60",
+                                         "height_field:60", "tumbler:4", "newtons_cradle", "stack:50",
+                                         "mass_ratio:1000"),
                          [](const testing::TestParamInfo<const char*>& info) {
                              std::string name = info.param;
                              for (char& c : name)

@@ -10,12 +10,12 @@ namespace lendulet {
 namespace {
 
 TEST(Registry, ListsEverySceneOnceWithASentence) {
-    const char* expected[] = {"large_pyramid", "many_pyramids",     "box_pile",      "sphere_pile",    "capsule_pile",
-                              "convex_pile",   "mixed_pile",        "joint_grid",    "ragdolls",       "tumbler",
-                              "mesh_terrain",  "large_world_sleep", "stack",         "mass_ratio",     "chain_heavy",
-                              "wall_ball",     "many_things",       "two_spheres",   "sphere_and_box", "two_boxes",
-                              "wrecking_ball", "carpet_bomb",       "spinning_ball", "rotating_board", "newtons_cradle",
-                              "dzhanibekov",   "dominoes"};
+    const char* expected[] = {"large_pyramid",  "many_pyramids", "box_pile",          "sphere_pile",   "capsule_pile",
+                              "convex_pile",    "mixed_pile",    "joint_grid",        "ragdolls",      "tumbler",
+                              "mesh_terrain",   "height_field",  "large_world_sleep", "stack",         "mass_ratio",
+                              "chain_heavy",    "wall_ball",     "many_things",       "two_spheres",   "sphere_and_box",
+                              "two_boxes",      "wrecking_ball", "carpet_bomb",       "spinning_ball", "rotating_board",
+                              "newtons_cradle", "dzhanibekov",   "dominoes"};
     std::vector<SceneInfo> scenes = built_in_scenes();
     EXPECT_EQ(scenes.size(), std::size(expected));
     for (const char* name : expected) {
@@ -107,12 +107,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Count{"box_pile:30", 35, 0}, Count{"sphere_pile:30", 35, 0}, Count{"capsule_pile:30", 35, 0},
                     Count{"convex_pile:30", 35, 0}, Count{"mixed_pile:30", 35, 0}, Count{"joint_grid:5", 25, 36},
                     Count{"ragdolls:2", 23, 20}, Count{"tumbler:3", 29, 0}, Count{"mesh_terrain:20", 21, 0},
-                    Count{"large_world_sleep:10", 215, 0}, Count{"stack:3", 4, 0}, Count{"mass_ratio", 7, 0},
-                    Count{"chain_heavy", 22, 21}, Count{"wall_ball:3", 95, 0}, Count{"many_things:3", 28, 0},
-                    Count{"two_spheres", 2, 0}, Count{"sphere_and_box", 2, 0}, Count{"two_boxes", 2, 0},
-                    Count{"wrecking_ball:3", 46, 0}, Count{"carpet_bomb:7", 98, 0}, Count{"spinning_ball:3", 10, 0},
-                    Count{"rotating_board:3", 10, 0}, Count{"newtons_cradle", 6, 5}, Count{"dzhanibekov", 1, 0},
-                    Count{"dominoes:5", 6, 0}),
+                    Count{"height_field:20", 21, 0}, Count{"large_world_sleep:10", 215, 0}, Count{"stack:3", 4, 0},
+                    Count{"mass_ratio", 7, 0}, Count{"chain_heavy", 22, 21}, Count{"wall_ball:3", 95, 0},
+                    Count{"many_things:3", 28, 0}, Count{"two_spheres", 2, 0}, Count{"sphere_and_box", 2, 0},
+                    Count{"two_boxes", 2, 0}, Count{"wrecking_ball:3", 46, 0}, Count{"carpet_bomb:7", 98, 0},
+                    Count{"spinning_ball:3", 10, 0}, Count{"rotating_board:3", 10, 0}, Count{"newtons_cradle", 6, 5},
+                    Count{"dzhanibekov", 1, 0}, Count{"dominoes:5", 6, 0}),
     [](const testing::TestParamInfo<Count>& info) {
         std::string name = info.param.name;
         for (char& c : name)

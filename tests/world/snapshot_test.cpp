@@ -68,9 +68,10 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Snapshots,
                                            Stretch{"mixed_pile:80", 120, 60}, Stretch{"stack:8", 60, 120},
                                            Stretch{"stack:30", 90, 60}, Stretch{"mass_ratio:1000", 60, 60},
                                            Stretch{"ragdolls:3", 60, 60}, Stretch{"mesh_terrain:40", 120, 40},
-                                           Stretch{"tumbler:4", 90, 60}, Stretch{"newtons_cradle", 70, 60},
-                                           Stretch{"chain_heavy", 50, 60}, Stretch{"dominoes:20", 60, 60},
-                                           Stretch{"large_world_sleep:60", 150, 90}, Stretch{"wall_ball:6", 30, 60}));
+                                           Stretch{"height_field:40", 120, 40}, Stretch{"tumbler:4", 90, 60},
+                                           Stretch{"newtons_cradle", 70, 60}, Stretch{"chain_heavy", 50, 60},
+                                           Stretch{"dominoes:20", 60, 60}, Stretch{"large_world_sleep:60", 150, 90},
+                                           Stretch{"wall_ball:6", 30, 60}));
 
 // Sleeping before, waking after: the contacts of sleepers are in the snapshot too.
 TEST(Snapshot, HoldsSleepersAndWhatWakesThem) {

@@ -53,24 +53,28 @@ public:
         return {std::move(hull), centre};
     }
     BuiltShape operator()(const TriangleMesh& s) {
-        for (const scenes::SceneMesh& mesh : scene_.meshes) {
-            if (&mesh.mesh.data() != &s.data()) continue;
-            Triangles& t = triangles_.emplace_back();
-            t.indices.assign(mesh.indices.begin(), mesh.indices.end());
-            t.vertices = mesh.vertices;
-            t.array = std::make_unique<btTriangleIndexVertexArray>(
-                static_cast<int>(t.indices.size() / 3), t.indices.data(), static_cast<int>(3 * sizeof(int)),
-                static_cast<int>(t.vertices.size()), &t.vertices[0].x, static_cast<int>(sizeof(Vec3)));
-            return {std::make_unique<btBvhTriangleMeshShape>(t.array.get(), true), {}};
-        }
+        for (const scenes::SceneMesh& mesh : scene_.meshes)
+            if (&mesh.mesh.data() == &s.data()) return triangles(mesh.vertices, mesh.indices);
         return {};
     }
+    // Its own height fields divide cells elsewhere: it gets the same triangles.
+    BuiltShape operator()(const HeightField& s) { return triangles(s.vertices(), s.triangles()); }
     template <class Other>
     BuiltShape operator()(const Other&) {
         return {};
     }
 
 private:
+    BuiltShape triangles(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& indices) {
+        Triangles& t = triangles_.emplace_back();
+        t.indices.assign(indices.begin(), indices.end());
+        t.vertices = vertices;
+        t.array = std::make_unique<btTriangleIndexVertexArray>(
+            static_cast<int>(t.indices.size() / 3), t.indices.data(), static_cast<int>(3 * sizeof(int)),
+            static_cast<int>(t.vertices.size()), &t.vertices[0].x, static_cast<int>(sizeof(Vec3)));
+        return {std::make_unique<btBvhTriangleMeshShape>(t.array.get(), true), {}};
+    }
+
     struct Triangles {
         std::vector<Vec3> vertices;
         std::vector<int> indices;

@@ -249,8 +249,12 @@ bool advance(Probe& probe, const Mover& a, const Mover& b, double max_fraction, 
     }
 }
 
-bool cast_mesh(const Geometry& mesh, const Motion& motion_a, const Geometry& b, const Motion& motion_b,
-               double max_fraction, CastHit& hit, bool fresh_only) {
+// Whether a one-sided triangle with this front lets through what touches it with this normal: from behind, or along an
+// edge from its own plane on.
+bool passes_from_behind(Vec3d normal, Vec3d front) { return dot(normal, front) < -1e-6; }
+
+bool cast_triangles(const Geometry& mesh, const Motion& motion_a, const Geometry& b, const Motion& motion_b,
+                    double max_fraction, CastHit& hit, bool fresh_only) {
     // B's path seen from the mesh: a box about B's pivot that holds B however it turns, and moves as B does.
     Mat3d r = exact_rotation(motion_a.rotation);
     Mover mover(b, motion_b);
@@ -273,17 +277,21 @@ bool cast_mesh(const Geometry& mesh, const Motion& motion_a, const Geometry& b, 
     }
     bool any = false;
     double limit = max_fraction;
-    walk_along(*mesh.mesh, {from, along, half}, limit, [&](uint32_t index) {
-        const MeshTriangle& t = mesh.mesh->triangles[index];
+    const TriangleSurface surface(mesh);
+    walk_along(surface, {from, along, half}, limit, [&](uint32_t index) {
         Vec3 corners[3];
-        for (int i = 0; i < 3; ++i) corners[i] = mesh.mesh->vertices[t.vertex[i]];
+        surface.corners(index, corners);
         Geometry core;
         core.kind = GeometryKind::triangle;
         core.triangle = corners;
         CastHit found;
         if (!cast_convex(core, motion_a, b, motion_b, limit, found)) return limit;
         if (fresh_only && found.overlapping) return limit;
-        auto original = static_cast<int32_t>(t.original);
+        if (surface.one_sided()) {
+            Mat3d turned = exact_rotation(rotation_at(motion_a, found.fraction));
+            if (passes_from_behind(found.normal, turned * to_double(surface.normal(index)))) return limit;
+        }
+        auto original = static_cast<int32_t>(surface.original(index));
         bool first =
             !any || found.fraction < hit.fraction || (found.fraction == hit.fraction && original < hit.triangle);
         if (!first) return limit;
@@ -311,7 +319,7 @@ bool cast_convex(const Geometry& a, const Motion& motion_a, const Geometry& b, c
 
 bool cast_shapes(const Geometry& a, const Motion& motion_a, const Geometry& b, const Motion& motion_b,
                  double max_fraction, CastHit& hit, bool fresh_only) {
-    if (a.kind == GeometryKind::mesh) return cast_mesh(a, motion_a, b, motion_b, max_fraction, hit, fresh_only);
+    if (has_triangles(a)) return cast_triangles(a, motion_a, b, motion_b, max_fraction, hit, fresh_only);
     bool met;
     if (a.kind == GeometryKind::plane) {
         Mover mover_a(a, motion_a), mover_b(b, motion_b);

@@ -37,8 +37,8 @@ struct CastHit {
 // larger one's.
 bool cast_convex(const Geometry& a, const Motion& motion_a, const Geometry& b, const Motion& motion_b,
                  double max_fraction, CastHit& hit);
-// The same for A of any kind: a plane, a mesh (the first of its triangles, with its index), or convex. B is convex.
-// `fresh_only`: what overlaps at fraction 0 is left out, triangle by triangle.
+// The same for A of any kind: a plane, a mesh or height field (the first of its triangles, with its index), or convex.
+// B is convex. `fresh_only`: what overlaps at fraction 0 is left out, triangle by triangle.
 bool cast_shapes(const Geometry& a, const Motion& motion_a, const Geometry& b, const Motion& motion_b,
                  double max_fraction, CastHit& hit, bool fresh_only = false);
 

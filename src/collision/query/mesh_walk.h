@@ -1,4 +1,5 @@
-// Walks through a mesh's hierarchy: along a ray or a swept box, nearest nodes first, and outwards from a box.
+// Walks through a mesh's hierarchy or a height field's pyramid: along a ray or a swept box, nearest nodes first, and
+// outwards from a box.
 //
 // The visitor is told a triangle and returns how far the walk still needs to go: a fraction of the translation, or a
 // distance. Node tests are made with a margin for rounding, so that what they leave out could not have been met.
@@ -7,7 +8,7 @@
 #include <cfloat>
 
 #include "collision/gjk_math.h"
-#include "geometry/mesh.h"
+#include "geometry/triangle_surface.h"
 
 namespace lendulet {
 
@@ -35,13 +36,23 @@ struct Stack {
     }
 };
 
-// Where the swept box first touches the node's box k, or more than `limit` where it does not before that.
-inline double entry_of(const SweptBox& s, const MeshNode& node, int k, double limit) {
+// A node's box.
+struct NodeBox {
+    float lower[3], upper[3];
+    bool empty() const { return !(lower[1] <= upper[1]); }
+};
+inline NodeBox box_of(const MeshNode& node, int k) {
+    return {{node.lower[0][k], node.lower[1][k], node.lower[2][k]},
+            {node.upper[0][k], node.upper[1][k], node.upper[2][k]}};
+}
+
+// Where the swept box first touches the node's box, or more than `limit` where it does not before that.
+inline double entry_of(const SweptBox& s, const NodeBox& box, double limit) {
     double enter = 0.0, leave = limit;
     const double o[3] = {s.origin.x, s.origin.y, s.origin.z}, h[3] = {s.half.x, s.half.y, s.half.z};
     const double d[3] = {s.translation.x, s.translation.y, s.translation.z};
     for (int i = 0; i < 3; ++i) {
-        double low = node.lower[i][k], high = node.upper[i][k];
+        double low = box.lower[i], high = box.upper[i];
         double grow = h[i] + margin * (absolute(low) + absolute(high) + h[i]);
         low -= grow, high += grow;
         if (d[i] == 0.0) {
@@ -55,18 +66,18 @@ inline double entry_of(const SweptBox& s, const MeshNode& node, int k, double li
     return enter <= leave ? enter : 2.0 * limit + 1.0;
 }
 
-// Squared distance between the boxes, rounded down.
-inline double distance_to(const MeshNode& node, int k, Vec3d lower, Vec3d upper) {
+// Distance between the boxes, rounded down.
+inline double distance_to(const NodeBox& box, Vec3d lower, Vec3d upper) {
     const double l[3] = {lower.x, lower.y, lower.z}, u[3] = {upper.x, upper.y, upper.z};
     double sum = 0.0;
     for (int i = 0; i < 3; ++i) {
-        double gap = maximum(0.0, maximum(node.lower[i][k] - u[i], l[i] - node.upper[i][k]));
+        double gap = maximum(0.0, maximum(box.lower[i] - u[i], l[i] - box.upper[i]));
         sum += gap * gap;
     }
     return square_root(sum) * (1.0 - margin);
 }
 
-// key_of(node, lane) orders and prunes; visit(triangle) gives the new limit.
+// key_of(box, limit) orders and prunes; visit(triangle) gives the new limit.
 template <class Key, class Visit>
 void walk(const MeshData& mesh, double limit, Key&& key_of, Visit&& visit) {
     if (mesh.nodes.empty()) return;
@@ -85,8 +96,9 @@ void walk(const MeshData& mesh, double limit, Key&& key_of, Visit&& visit) {
         const MeshNode& node = mesh.nodes[static_cast<uint32_t>(e.node)];
         int bottom = stack.top;
         for (int k = 0; k < 8; ++k) {
-            if (!(node.lower[0][k] <= node.upper[0][k])) continue;
-            double key = key_of(node, k, limit);
+            const NodeBox box = box_of(node, k);
+            if (box.empty()) continue;
+            double key = key_of(box, limit);
             if (key > limit) continue;
             // Leaves wait their turn too: a nearer node may hold a nearer triangle.
             int32_t child = node.child[k] >= 0 ? node.child[k] : ~(e.node * 8 + k);
@@ -95,20 +107,64 @@ void walk(const MeshData& mesh, double limit, Key&& key_of, Visit&& visit) {
     }
 }
 
+// The same down the pyramid of a height field. Blocks are told by level, column and row.
+template <class Key, class Visit>
+void walk(const HeightFieldData& field, double limit, Key&& key_of, Visit&& visit) {
+    struct Block {
+        int32_t level, i, k;
+        float key;
+    };
+    Block stack[3 * 32 + 4];  // three wait on each level
+    int top = 0;
+    auto look_at = [&](int32_t level, int32_t i, int32_t k, int bottom) {
+        NodeBox box;
+        field.block_box(level, i, k, box.lower, box.upper);
+        if (box.empty()) return;
+        double key = key_of(box, limit);
+        if (key > limit) return;
+        Block b{level, i, k, static_cast<float>(key * (1.0 - margin))};
+        int at = top++;
+        for (; at > bottom && stack[at - 1].key < b.key; --at) stack[at] = stack[at - 1];
+        stack[at] = b;
+    };
+    look_at(field.top(), 0, 0, 0);
+    while (top > 0) {
+        const Block b = stack[--top];
+        if (b.key > limit) continue;
+        if (b.level == 0) {
+            uint32_t first = 2 * field.cell(b.i, b.k);
+            limit = visit(first);
+            limit = visit(first + 1);
+            continue;
+        }
+        const int32_t level = b.level - 1, bottom = top;
+        const int32_t width = (field.cells_x + (1 << level) - 1) >> level;
+        const int32_t depth = (field.cells_z + (1 << level) - 1) >> level;
+        for (int32_t k = 2 * b.k; k < 2 * b.k + 2 && k < depth; ++k)
+            for (int32_t i = 2 * b.i; i < 2 * b.i + 2 && i < width; ++i) look_at(level, i, k, bottom);
+    }
+}
+
+template <class Key, class Visit>
+void walk(const TriangleSurface& surface, double limit, Key&& key_of, Visit&& visit) {
+    if (surface.mesh()) walk(*surface.mesh(), limit, key_of, visit);
+    else walk(surface.field(), limit, key_of, visit);
+}
+
 }  // namespace mesh_walk
 
 template <class Visit>
-void walk_along(const MeshData& mesh, const SweptBox& box, double limit, Visit&& visit) {
+void walk_along(const TriangleSurface& surface, const SweptBox& swept, double limit, Visit&& visit) {
     mesh_walk::walk(
-        mesh, limit, [&](const MeshNode& node, int k, double now) { return mesh_walk::entry_of(box, node, k, now); },
+        surface, limit, [&](const mesh_walk::NodeBox& box, double now) { return mesh_walk::entry_of(swept, box, now); },
         visit);
 }
 
 template <class Visit>
-void walk_outwards(const MeshData& mesh, Vec3d lower, Vec3d upper, double limit, Visit&& visit) {
+void walk_outwards(const TriangleSurface& surface, Vec3d lower, Vec3d upper, double limit, Visit&& visit) {
     mesh_walk::walk(
-        mesh, limit, [&](const MeshNode& node, int k, double) { return mesh_walk::distance_to(node, k, lower, upper); },
-        visit);
+        surface, limit,
+        [&](const mesh_walk::NodeBox& box, double) { return mesh_walk::distance_to(box, lower, upper); }, visit);
 }
 
 }  // namespace lendulet

@@ -35,7 +35,7 @@ bool nearness_plane(const PlacedPair& p, double limit, Nearness& out) {
 }
 
 // The nearest triangle, or of several that overlap the one that is farthest from leaving.
-bool nearness_mesh(const PlacedPair& p, double limit, Nearness& out) {
+bool nearness_triangles(const PlacedPair& p, double limit, Nearness& out) {
     Vec3d between = transpose_multiply(exact_rotation(p.rotation_a), p.offset);
     CentredBox box = bounds(*p.b, conjugate(p.rotation_a) * p.rotation_b);
     Vec3 centre = to_float(between) + box.centre;
@@ -43,10 +43,10 @@ bool nearness_mesh(const PlacedPair& p, double limit, Nearness& out) {
     Vec3 half = box.half + Vec3{slack, slack, slack};
     bool any = false;
     double now = limit;
-    walk_outwards(*p.a->mesh, to_double(centre - half), to_double(centre + half), limit, [&](uint32_t index) {
-        const MeshTriangle& t = p.a->mesh->triangles[index];
+    const TriangleSurface surface(*p.a);
+    walk_outwards(surface, to_double(centre - half), to_double(centre + half), limit, [&](uint32_t index) {
         Vec3 corners[3];
-        for (int i = 0; i < 3; ++i) corners[i] = p.a->mesh->vertices[t.vertex[i]];
+        surface.corners(index, corners);
         Geometry core;
         core.kind = GeometryKind::triangle;
         core.triangle = corners;
@@ -54,7 +54,7 @@ bool nearness_mesh(const PlacedPair& p, double limit, Nearness& out) {
         part.a = &core;
         Nearness found;
         if (!nearness_convex(part, now, found)) return now;
-        auto original = static_cast<int32_t>(t.original);
+        auto original = static_cast<int32_t>(surface.original(index));
         if (any && !(found.distance < out.distance || (found.distance == out.distance && original < out.triangle)))
             return now;
         any = true;
@@ -69,7 +69,7 @@ bool nearness_mesh(const PlacedPair& p, double limit, Nearness& out) {
 
 bool nearness(const PlacedPair& pair, double limit, Nearness& out) {
     out = {};
-    if (pair.a->kind == GeometryKind::mesh) return nearness_mesh(pair, limit, out);
+    if (has_triangles(*pair.a)) return nearness_triangles(pair, limit, out);
     if (pair.a->kind == GeometryKind::plane) return nearness_plane(pair, limit, out);
     return nearness_convex(pair, limit, out);
 }

@@ -20,7 +20,7 @@ struct Nearness {
     double distance;         // between the surfaces, m; negative: the shortest way out
     Vec3d normal;            // unit, from A to B, common axes
     Vec3d point_a, point_b;  // on the surfaces, from A's origin, common axes
-    int32_t triangle = -1;   // of A, where it is a mesh
+    int32_t triangle = -1;   // of A, where it has any
 };
 
 // False where they are farther apart than `limit` (>= 0).

@@ -70,7 +70,8 @@ bool cast_ray(const Geometry& g, const LocalRay& ray, LocalRayHit& hit) {
         case GeometryKind::plane:
             return cast_ray_plane(g, ray, hit);
         case GeometryKind::mesh:
-            return cast_ray_mesh(*g.mesh, ray, hit);
+        case GeometryKind::height_field:
+            return cast_ray_triangles(TriangleSurface(g), ray, hit);
     }
     return false;
 }

@@ -1,15 +1,16 @@
 // Rays against single shapes, in the shape's own frame and in double: closed forms for balls, capsules, boxes,
-// cylinders, cones, planes and small hulls, distance queries for what is rounded, the hierarchy for meshes.
+// cylinders, cones, planes and small hulls, distance queries for what is rounded, the hierarchy for meshes and the
+// pyramid of height fields.
 //
 // A solid is a closed set. A ray meets it at the smallest fraction at which its point lies in the solid; a ray that
-// starts inside meets it at fraction 0 with a normal against the ray. Triangles of meshes are met from both sides, and
-// have no inside.
+// starts inside meets it at fraction 0 with a normal against the ray. Triangles are met from both sides unless they are
+// one-sided, and have no inside.
 #pragma once
 
 #include <cstdint>
 
 #include "collision/gjk_math.h"
-#include "geometry/geometry.h"
+#include "geometry/triangle_surface.h"
 
 namespace lendulet {
 
@@ -45,6 +46,6 @@ bool chord_of_two_balls(const LocalRay& line, double half_height, double bottom_
                         Chord& chord);
 bool chord_of_hull(const LocalRay& line, const HullData& hull, Chord& chord);
 
-bool cast_ray_mesh(const MeshData& mesh, const LocalRay& ray, LocalRayHit& hit);
+bool cast_ray_triangles(const TriangleSurface& surface, const LocalRay& ray, LocalRayHit& hit);
 
 }  // namespace lendulet

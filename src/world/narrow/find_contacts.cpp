@@ -198,6 +198,7 @@ private:
         for (int i = 0; i < count; ++i) {
             ContactRecord& r = record(p, i);
             fill_record(r, a, b, manifolds[i]);
+            set_surface(world_, p, r);
             int k = 0;
             while (k < p.count && old[k].key != r.key) ++k;
             if (k < p.count) warm_start(r, old[k], a, b, scale_);
@@ -256,7 +257,9 @@ private:
     void finish(ColliderPair& p, uint32_t index, int count, float margin, float clearance) {
         p.count = static_cast<uint8_t>(count);
         for (int i = 0; i < count; ++i) tally(p.first_record + static_cast<uint32_t>(i));
-        if (p.kind != PairKind::general && p.kind != PairKind::boxes) return;
+        const bool may_be_kept = p.kind == PairKind::general || p.kind == PairKind::boxes;
+        if (may_be_kept || p.fixed_a) remember_separations(p, count);  // floors have seams, see seams.cpp
+        if (!may_be_kept) return;
         KeptPose& pose = world_.pairs.poses[index];
         uint32_t a = collider_a(p), b = collider_b(p);
         const ShapeFrame &fa = world_.frames[a], &fb = world_.frames[b];
@@ -265,6 +268,9 @@ private:
         for (int k = 0; k < 3; ++k) pose.offset[k] = fb.centre[k] - fa.centre[k];
         pose.tolerance = count > 0 ? kept_share * near : 1e30f;
         pose.clearance = count > 0 ? margin + near : clearance;
+    }
+
+    void remember_separations(const ColliderPair& p, int count) {
         for (int i = 0; i < count; ++i) {
             uint32_t record = p.first_record + static_cast<uint32_t>(i);
             for (int j = 0; j < 4; ++j)
@@ -336,6 +342,7 @@ void find_contacts(WorldData& world, float dt) {
         for (int i = begin; i < end; i += batch_capacity)
             chunk.run(i, end - i < batch_capacity ? end : i + batch_capacity);
     });
+    silence_seams(world);
     list_contacts(world);
     world.awake_points = 0;
     world.awake_penetration = 0.0f;

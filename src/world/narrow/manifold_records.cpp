@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "geometry/triangle_surface.h"
+
 namespace lendulet {
 namespace {
 
@@ -10,6 +12,12 @@ constexpr float same_point_distance = 0.05f;
 
 void set_centres(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b) {
     for (int k = 0; k < 3; ++k) r.arm_offset[k] = b.centre[k] - a.centre[k];
+}
+
+void write_surface(const ContactSurface& surface, ContactRecord& r) {
+    r.static_friction = surface.static_friction;
+    r.dynamic_friction = surface.dynamic_friction;
+    r.restitution = surface.restitution;
 }
 
 // Points that no name tells.
@@ -32,12 +40,19 @@ void take_nearest(ContactRecord& r, const OldContact& old, bool* found, bool* us
 }  // namespace
 
 void prepare_record(const WorldData& world, const ColliderPair& p, ContactRecord& r) {
-    ContactSurface surface = combine(world.colliders.surface[p.a], world.colliders.surface[p.b]);
-    r.static_friction = surface.static_friction;
-    r.dynamic_friction = surface.dynamic_friction;
-    r.restitution = surface.restitution;
+    write_surface(combine(world.colliders.surface[p.a], world.colliders.surface[p.b]), r);
     r.separation_speed = p.fixed_a ? world.config.static_separation_speed : world.config.rigid_separation_speed;
     r.flags = p.flipped ? contact_flipped : 0u;
+}
+
+void set_surface(const WorldData& world, const ColliderPair& p, ContactRecord& r) {
+    const ColliderStore& c = world.colliders;
+    if (r.triangle < 0 || (c.materials[p.a].empty() && c.materials[p.b].empty())) return;
+    auto surface = [&](uint32_t collider) {
+        if (c.materials[collider].empty()) return c.surface[collider];
+        return c.materials[collider][TriangleSurface(c.geometry[collider]).material(static_cast<uint32_t>(r.triangle))];
+    };
+    write_surface(combine(surface(p.a), surface(p.b)), r);
 }
 
 void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const Manifold& m) {

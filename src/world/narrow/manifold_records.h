@@ -10,6 +10,9 @@ namespace lendulet {
 // The parts of a record that stay while its pair lasts.
 void prepare_record(const WorldData& world, const ColliderPair& p, ContactRecord& r);
 
+// The surface of a record whose triangle is set, where triangles have materials of their own; else as prepared.
+void set_surface(const WorldData& world, const ColliderPair& p, ContactRecord& r);
+
 // All others but impulses and the index of the pair. `a` and `b` are the shapes' frames.
 void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const Manifold& m);
 void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const BatchManifold& m);

@@ -49,9 +49,9 @@ Result<QueryShape> check_shape(const PosedShape& placed, const char* call) {
 Result<QueryShape> check_convex(const PosedShape& placed, const char* call) {
     Result<QueryShape> shape = check_shape(placed, call);
     if (!shape) return shape;
-    GeometryKind kind = shape.value().geometry.kind;
-    if (kind == GeometryKind::plane || kind == GeometryKind::mesh)
-        return bad(call, "the shape must be convex: neither a plane nor a mesh");
+    const Geometry& g = shape.value().geometry;
+    if (g.kind == GeometryKind::plane || has_triangles(g))
+        return bad(call, "the shape must be convex: neither a plane nor a mesh nor a height field");
     return shape;
 }
 

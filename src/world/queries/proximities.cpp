@@ -68,7 +68,7 @@ Proximity nearest_of(const ShapeSearch& s, float max_distance) {
     return best_collider == no_slot ? Proximity{} : s.finished(best_collider, best);
 }
 
-// `solids_only`: not the surfaces of meshes.
+// `solids_only`: not surfaces of triangles.
 int all_overlaps(const ShapeSearch& s, std::span<Proximity> out, bool solids_only) {
     struct Met {
         uint32_t collider;
@@ -77,7 +77,7 @@ int all_overlaps(const ShapeSearch& s, std::span<Proximity> out, bool solids_onl
     Array<Met> met;
     s.for_each_candidate([&](uint32_t c) {
         Nearness n;
-        if (solids_only && s.world.colliders.geometry[c].kind == GeometryKind::mesh) return;
+        if (solids_only && has_triangles(s.world.colliders.geometry[c])) return;
         if (s.near(c, 0.0, n)) met.push_back({c, n});
     });
     auto by_id = [](const Met& a, const Met& b) { return a.collider < b.collider; };

@@ -106,7 +106,7 @@ Result<Ordered> in_order(const PosedShape& a, const PosedShape& b, const char* c
     Result<QueryShape> sb = check_shape(b, call);
     if (!sb) return sb.error();
     auto convex = [](const QueryShape& s) {
-        return s.geometry.kind != GeometryKind::plane && s.geometry.kind != GeometryKind::mesh;
+        return s.geometry.kind != GeometryKind::plane && !has_triangles(s.geometry);
     };
     if (convex(sb.value())) return Ordered{sa.value(), sb.value(), false};
     if (convex(sa.value())) return Ordered{sb.value(), sa.value(), true};
@@ -140,7 +140,7 @@ Result<bool> contains(const PosedShape& shape, Position point) {
     if (!s) return s.error();
     if (Status p = check_point(point, call); !p) return p.error();
     const QueryShape& q = s.value();
-    if (q.geometry.kind == GeometryKind::mesh) return false;
+    if (has_triangles(q.geometry)) return false;
     static constexpr Geometry dot{};
     return touching({&q.geometry, &dot, q.pose.orientation, {}, in_double(point) - in_double(q.pose.position)});
 }

@@ -42,6 +42,10 @@ uint64_t mix_body(uint64_t h, const WorldData& world, uint32_t slot) {
         h = hash_combine(h, static_cast<uint64_t>(world.colliders.geometry[c].kind));
         h = mix(hash_floats(h, values, 4), world.colliders.local[c]);
         h = mix(h, world.colliders.geometry[c].size);
+        for (const Surface& s : world.colliders.materials[c]) {
+            float of_table[3] = {s.static_friction, s.dynamic_friction, s.restitution};
+            h = hash_floats(h, of_table, 3);
+        }
     }
     return h;
 }

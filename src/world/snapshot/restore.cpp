@@ -83,7 +83,7 @@ Status check_boxes(const WorldData& world, const SavedState& state) {
 int room_for_contacts(const WorldData& world, const SavedPair& p) {
     const ColliderStore& c = world.colliders;
     if (c.info[p.a].is_trigger || c.info[p.b].is_trigger) return 0;
-    bool mesh = c.geometry[p.a].kind == GeometryKind::mesh || c.geometry[p.b].kind == GeometryKind::mesh;
+    bool mesh = has_triangles(c.geometry[p.a]) || has_triangles(c.geometry[p.b]);
     return mesh ? max_mesh_manifolds : 1;
 }
 
@@ -188,6 +188,7 @@ void apply_pair(WorldData& world, const SavedPair& saved, const SavedContact* co
         ContactRecord& r = world.records[p.first_record + k];
         r = contacts[k].record;
         prepare_record(world, p, r);
+        set_surface(world, p, r);
         r.pair = number;
         world.found_separations[p.first_record + k] = contacts[k].found;
     }

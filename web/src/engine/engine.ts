@@ -9,7 +9,7 @@ export const poseStride = 8; // floats: position, speed (-1: asleep), orientatio
 export const contactStride = 8; // floats: position, separation, normal, normal impulse
 
 export enum ShapeType {
-    sphere, capsule, taperedCapsule, box, cylinder, taperedCylinder, cone, hull, plane, mesh,
+    sphere, capsule, taperedCapsule, box, cylinder, taperedCylinder, cone, hull, plane, mesh, heightField,
 }
 export enum BodyType {
     fixed, kinematic, dynamic,

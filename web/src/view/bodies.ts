@@ -25,7 +25,8 @@ function kindOf(c: Collider, type: BodyType, parts: number): Kind {
 }
 // Ground takes shadows; only what stands on it casts them.
 function isSmall(c: Collider): boolean {
-    return c.type !== ShapeType.plane && c.type !== ShapeType.mesh && Math.max(...c.size) < 40;
+    const unbounded = [ShapeType.plane, ShapeType.mesh, ShapeType.heightField];
+    return !unbounded.includes(c.type) && Math.max(...c.size) < 40;
 }
 
 const one = new THREE.Vector3(1, 1, 1);

@@ -88,6 +88,7 @@ export function modelOf(c: Collider): ShapeModel | null {
         case ShapeType.hull:
             return { key: `hull ${c.mesh}`, scale: same, make: (surface) => facets(surface(c.mesh), true) };
         case ShapeType.mesh:
+        case ShapeType.heightField:
             return { key: `mesh ${c.mesh}`, scale: same, make: (surface) => facets(surface(c.mesh), true) };
         case ShapeType.plane:
             return null;

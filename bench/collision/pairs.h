@@ -1,0 +1,79 @@
+// What is measured: pairs of convex shapes at known distances, and what measures it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lendulet/shapes.h"
+
+namespace lendulet::bench {
+
+// Two boxes or two hulls, seen from the frame of A.
+struct ConvexCase {
+    Shape a, b;
+    Transform b_in_a, moved;    // moved: by up to 1 mm and a milliradian
+    double truth, truth_moved;  // distance, m; negative: depth
+};
+
+struct PairSet {
+    std::string name;  // "box-box far"
+    bool overlapping;
+    std::vector<ConvexCase> cases;
+};
+
+// Boxes with half extents from 0.25 to 1 m: far (0.1 to 2 m apart), near (1e-4 to 1e-2 m), touching, overlapping by 1
+// to 50 mm and by 0.1 to 0.5 m; hulls of 32 points on a ball of a metre, far and deep.
+std::vector<PairSet> make_pair_sets(int pairs);
+
+// A routine that answers all pairs of a set one after the other.
+class Subject {
+public:
+    virtual ~Subject() = default;
+    virtual std::string routine() const = 0;
+    // Whether it has answers of this kind.
+    virtual bool takes(const PairSet& set) const = 0;
+    virtual void load(const PairSet& set) = 0;
+    virtual void rewind() {}                      // before each round, not measured
+    virtual bool moved() const { return false; }  // answers for the moved poses
+    // Distances or depths as the truth has them; not a number where it says that it has failed.
+    virtual void run(std::vector<double>& answers) = 0;
+};
+using Subjects = std::vector<std::unique_ptr<Subject>>;
+
+void add_own_subjects(Subjects& subjects);
+void add_bullet_subjects(Subjects& subjects);
+void add_ccd_subjects(Subjects& subjects);
+void add_fcl_subjects(Subjects& subjects);
+// Peers that the build did not find, by Debian's names.
+std::vector<std::string> missing_collision_peers();
+
+struct CollisionRow {
+    std::string routine, name;
+    double median_ns, worst_error;  // m; below 0: not judged
+    long failures;
+    bool ours;
+};
+using CollisionRows = std::vector<CollisionRow>;
+
+// Closed forms, meshes and height fields: by time alone, and the result beside that of the distance query.
+void measure_kinds(int pairs, int repeats, CollisionRows& rows);
+// Rays into a settled pile of boxes.
+void measure_rays(int rays, int bodies, int repeats, CollisionRows& rows);
+
+// The pile and the rays, for the peers: boxes of half a metre at these poses, beside static boxes.
+struct RayScene {
+    struct Placed {
+        Vec3 half;
+        Pose pose;
+    };
+    std::vector<Placed> boxes;
+    std::vector<Vec3> from, to;
+    std::vector<double> fractions;  // of this engine's hits, above 1: none
+};
+// Times in ns a ray, one for each round, and fractions of the hits.
+std::vector<double> bullet_rays(const RayScene& scene, int repeats, std::vector<double>& fractions);
+
+double median_of(std::vector<double> values);
+
+}  // namespace lendulet::bench

@@ -1,0 +1,127 @@
+// Seams: where several bodies, or triangles that are no neighbours, make up one floor, the end of each piece is an edge
+// that what slides over the floor could stumble on.
+//
+// A contact F keeps a convex shape above the plane through its points at right angles to its normal. A piece of another
+// contact E (a convex shape, or a triangle) that does not rise above that plane cannot be met from above it, so what E
+// adds by another normal than F's is nothing but the piece's end: E is silenced for this step. Both must stand still
+// relative to each other: they are of one pair or of static bodies.
+#include "geometry/triangle_surface.h"
+#include "world/world_data.h"
+
+namespace lendulet {
+namespace {
+
+constexpr int pairs_per_task = 64;
+// Sine of the angle up to which two normals count as one; with more a body's direction would change by so much. The
+// faces of one floor have the same normal but for rounding.
+constexpr float same_normal = 2e-4f;
+// What rises above the plane by less than this is part of the floor: of the shape's radius, and of the depth of its
+// inner core, so that thin plates do not slide into walls.
+constexpr float level_of_radius = 2e-4f, level_of_depth = 0.2f;
+// Clipping takes points for inside that lie this much outside a face, in parts of the shape's diameter.
+constexpr float overhang = 2e-4f;
+// Coordinates are rounded.
+constexpr float rounding = 5e-7f;
+
+// A manifold with what it is of.
+struct Touch {
+    uint32_t record;
+    uint32_t fixed;  // collider of the side that constraints do not move
+    Vec3 origin;     // world position from which its points count
+};
+
+uint32_t fixed_collider(const ColliderPair& p) { return p.flipped ? p.b : p.a; }
+uint32_t moved_collider(const ColliderPair& p) { return p.flipped ? p.a : p.b; }
+bool has_floor(const ColliderPair& p) { return p.kind != PairKind::trigger && p.fixed_a && p.count > 0; }
+
+Vec3 normal_of(const ContactRecord& r) { return {r.normal[0], r.normal[1], r.normal[2]}; }
+
+Touch touch_of(const WorldData& world, const ColliderPair& p, uint32_t i) {
+    const uint32_t fixed = fixed_collider(p);
+    const float* c = world.frames[fixed].centre;
+    return {p.first_record + i, fixed, {c[0], c[1], c[2]}};
+}
+
+// On the surface of the fixed side, where it was when the manifold was made.
+Vec3 surface_point(const WorldData& world, const Touch& t, int j) {
+    const ContactRecord& r = world.records[t.record];
+    const float* x = r.points[j].position;
+    return t.origin + Vec3{x[0], x[1], x[2]} - 0.5f * world.found_separations[t.record].s[j] * normal_of(r);
+}
+
+// How far the piece that a manifold touches rises along a world direction.
+float rise_of(const WorldData& world, const Touch& t, Vec3 direction) {
+    const Geometry& g = world.colliders.geometry[t.fixed];
+    const ShapeFrame& f = world.frames[t.fixed];
+    const Quat q{f.rotation[0], f.rotation[1], f.rotation[2], f.rotation[3]};
+    const Vec3 local = rotate_inverse(q, direction), at = t.origin + Vec3{f.arm[0], f.arm[1], f.arm[2]};
+    if (g.kind == GeometryKind::plane) return 1e30f;
+    if (!has_triangles(g)) return dot(direction, at) + dot(local, support_core(g, local)) + g.rounding;
+    const TriangleSurface surface(g);
+    Vec3 p[3];
+    surface.corners(surface.index_of(static_cast<uint32_t>(world.records[t.record].triangle)), p);
+    return dot(direction, at) + maximum(dot(local, p[0]), maximum(dot(local, p[1]), dot(local, p[2])));
+}
+
+// Whether F's plane is above the piece of E, whose points are in it.
+bool covers(const WorldData& world, const Touch& f, const Touch& e, float level, float radius) {
+    const ContactRecord &rf = world.records[f.record], &re = world.records[e.record];
+    const Vec3 n = normal_of(rf);
+    const float along = dot(n, normal_of(re));
+    if (along < -level_of_depth || length_squared(cross(n, normal_of(re))) < same_normal * same_normal) return false;
+    float plane = 1e30f, overlap = 0.0f;
+    for (int j = 0; j < rf.point_count; ++j) {
+        plane = minimum(plane, dot(n, surface_point(world, f, j)));
+        overlap = maximum(overlap, -world.found_separations[f.record].s[j]);
+    }
+    level += rounding * max_component(absolute(e.origin) + absolute(f.origin));
+    const float slack = level + 2.5f * overhang * radius;
+    for (int j = 0; j < re.point_count; ++j) {
+        float height = dot(n, surface_point(world, e, j)) - plane;
+        if (height > slack || height < -slack - overlap) return false;
+    }
+    return rise_of(world, e, n) - plane <= level;
+}
+
+void silence(ContactRecord& r) {
+    for (ContactPointRecord& p : r.points) p.separation = far_separation;
+    for (float& x : r.normal_impulse) x = 0.0f;
+    for (float& x : r.friction_impulse) x = 0.0f;
+    r.twist_impulse = 0.0f;
+}
+
+// Writes this pair's records alone, and reads of others what is not written here.
+void silence_pair(WorldData& world, uint32_t number) {
+    const ColliderPair& p = world.pairs.pairs[number];
+    if (!has_floor(p)) return;
+    const uint32_t moved = moved_collider(p);
+    const ColliderInfo& info = world.colliders.info[moved];
+    const float level = minimum(level_of_radius * info.radius, level_of_depth * info.depth);
+    const bool stands = world.bodies.info[world.colliders.info[fixed_collider(p)].body].type == BodyType::fixed;
+    for (uint32_t i = 0; i < p.count; ++i) {
+        const Touch e = touch_of(world, p, i);
+        bool covered = false;
+        world.pairs.for_each_of(moved, [&](uint32_t other) {
+            const ColliderPair& q = world.pairs.pairs[other];
+            if (covered || !has_floor(q) || moved_collider(q) != moved) return;
+            const BodyInfo& body = world.bodies.info[world.colliders.info[fixed_collider(q)].body];
+            if (other != number && !(stands && body.type == BodyType::fixed)) return;
+            for (uint32_t k = 0; k < q.count && !covered; ++k) {
+                const Touch f = touch_of(world, q, k);
+                covered = f.record != e.record && covers(world, f, e, level, info.radius) &&
+                          !covers(world, e, f, level, info.radius);
+            }
+        });
+        if (covered) silence(world.records[e.record]);
+    }
+}
+
+}  // namespace
+
+void silence_seams(WorldData& world) {
+    world.tasks.for_each(world.pairs.listed.count(), pairs_per_task, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) silence_pair(world, world.pairs.listed[static_cast<size_t>(i)].pair);
+    });
+}
+
+}  // namespace lendulet
