@@ -33,6 +33,14 @@ ContactSurface combine(const Surface& a, const Surface& b) {
     return s;
 }
 
+ExtraSurface combine_extra(const Surface& a, const Surface& b) {
+    CombineRule friction = stronger(a.friction_combine, b.friction_combine);
+    CombineRule restitution = stronger(a.restitution_combine, b.restitution_combine);
+    return {combine(friction, a.rolling_friction, b.rolling_friction),
+            combine(friction, a.spinning_friction, b.spinning_friction),
+            combine(restitution, a.tangential_restitution, b.tangential_restitution)};
+}
+
 uint32_t ColliderStore::add() {
     uint32_t slot = slots.add();
     size_t n = slots.capacity();
