@@ -67,11 +67,13 @@ struct Side {
 // How the velocity along u changes per unit impulse along n.
 float coupling(const Side& s, Vec3 u, Vec3 n) { return dot(cross(s.arm, u), s.inverse_inertia * cross(s.arm, n)); }
 
-// The largest impulse against the slip along u that adds no energy, given the one along n: with J_n and J_u these, an
-// impulse changes it by -J_u s + K_uu J_u^2 / 2 - K_un J_n J_u beside what J_n does alone.
-float elastic_limit(const Side& a, const Side& b, Vec3 n, Vec3 u, float normal_impulse, float slide) {
-    float coupled = coupling(a, u, n) + coupling(b, u, n);
-    return maximum(2.0f * (slide + coupled * normal_impulse) / (a.effectiveness(u) + b.effectiveness(u)), 0.0f);
+// The largest impulse f against the slip s along u with which the impact adds no energy. The impulse J along n alone
+// takes `lost` of it, f changes it by K_uu f^2 / 2 - s f - K_un J f: bodies other than balls answer along both to
+// either.
+float elastic_limit(const Side& a, const Side& b, Vec3 n, Vec3 u, float normal_impulse, float slide, float lost) {
+    float effective = a.effectiveness(u) + b.effectiveness(u);
+    float pull = slide + (coupling(a, u, n) + coupling(b, u, n)) * normal_impulse;
+    return (pull + square_root(pull * pull + 2.0f * effective * lost)) / effective;
 }
 
 // One point of a manifold; true where it bounced.
@@ -114,14 +116,12 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
     float slide = length(slip);
     if (slide > 1e-9f) {
         Vec3 u = (1.0f / slide) * slip;
-        float stopping = slide / (a.effectiveness(u) + b.effectiveness(u));
-        if (tangential_restitution > 0.0f)
-            stopping =
-                minimum((1.0f + tangential_restitution) * stopping, elastic_limit(a, b, n, u, normal_impulse, slide));
+        float stopping = (1.0f + tangential_restitution) * slide / (a.effectiveness(u) + b.effectiveness(u));
         // Static and sliding friction on the whole normal impulse (thesis 3.3.4, magnitudes as in THESIS-NOTES).
         float friction =
             stopping <= r.static_friction * normal_impulse ? stopping : r.dynamic_friction * normal_impulse;
-        impulse -= friction * u;
+        float lost = 0.5f * (1.0f - r.restitution) * speed * normal_impulse;
+        impulse -= minimum(friction, elastic_limit(a, b, n, u, normal_impulse, slide, lost)) * u;
     }
     a.apply(-impulse, time);
     b.apply(impulse, time);

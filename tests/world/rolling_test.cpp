@@ -65,27 +65,28 @@ TEST(RollingFriction, GoesOnFromASnapshotAsItWas) {
     EXPECT_EQ(world.hash(), after);
 }
 
-// The torque acts on both bodies: what one loses of L the other gains.
+// The torque acts on both bodies: what one loses of L the other gains. Two balls that rubber presses together end up
+// turning as one.
 TEST(RollingFriction, ConservesAngularMomentum) {
-    World world = WorldBuilder{}.no_gravity().build().value();
-    RigidBodyDef ball{.shape = Sphere{0.5f}, .spinning_friction = 0.1f};
-    ball.rolling_friction = 0.1f;
+    World world = WorldBuilder{}.no_gravity().no_friction().build().value();
+    RigidBodyDef ball{.shape = Sphere{0.5f}, .rolling_friction = 0.1f, .spinning_friction = 0.1f};
     ball.position = {-0.499f, 0.0f, 0.0f};
     ball.angular_velocity = {3.0f, 1.0f, 2.0f};
     BodyId a = world.add_rigid_body(ball).value();
     ball.position.x = 0.499f;
     ball.angular_velocity = {-1.0f, 0.0f, 1.0f};
     BodyId b = world.add_rigid_body(ball).value();
+    JointDef rubber;
+    rubber.type = JointType::distance;
+    rubber.body_a = a, rubber.body_b = b;
+    rubber.spring = {500.0f, 50.0f};
+    rubber.collide_connected = true;
+    world.add_joint(rubber).value();
     const Momentum before = world.momentum();
-    for (int i = 0; i < 60; ++i) {
-        world.get(a).apply_force({500.0f, 0.0f, 0.0f});
-        world.get(b).apply_force({-500.0f, 0.0f, 0.0f});
-        world.update(dt).value();
-    }
+    for (int i = 0; i < 240; ++i) world.update(dt).value();
     const Momentum after = world.momentum();
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(after.angular[k], before.angular[k], 1e-3) << k;  // of 200 kg m^2/s
-    Vec3 relative = world.get(b).angular_velocity() - world.get(a).angular_velocity();
-    EXPECT_NEAR(relative.x, 0.0f, 1e-3f);  // they turn together about the normal
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(after.angular[k], before.angular[k], 2e-3) << k;  // of 200 kg m^2/s
+    EXPECT_LT(length(world.get(b).angular_velocity() - world.get(a).angular_velocity()), 1e-4f);
 }
 
 // By the rule of friction, the first of both in the list of rules.
@@ -131,7 +132,9 @@ TEST(RollingFriction, LetsABallSleep) {
     EXPECT_TRUE(world.get(ball).asleep());
 }
 
-// Tumbling boxes that bounce off a floor and each other with all of both kinds never gain energy.
+// Tumbling boxes that bounce off walls and each other with all of both kinds gain no energy but what turning them to
+// the moment of an impact costs or gives. Were their friction not cut to what adds none, it would rise by 4 % in a
+// step.
 TEST(TangentialRestitution, AddsNoEnergy) {
     World world = WorldBuilder{}.no_gravity().build().value();
     StaticBodyDef wall{.friction = 2.0f, .restitution = 1.0f, .tangential_restitution = 1.0f};
@@ -154,13 +157,15 @@ TEST(TangentialRestitution, AddsNoEnergy) {
                              .tangential_restitution = 1.0f})
             .value();
     }
-    double energy = world.kinetic_energy();
+    const double start = world.kinetic_energy();
+    double energy = start;
     for (int i = 0; i < 600; ++i) {
         world.update(dt).value();
-        ASSERT_LT(world.kinetic_energy(), energy * (1.0 + 1e-4)) << i;
+        ASSERT_LT(world.kinetic_energy(), energy * (1.0 + 3e-3)) << i;
         energy = world.kinetic_energy();
     }
     EXPECT_GT(energy, 1.0);
+    EXPECT_LT(energy, start);
 }
 
 TEST(RollingFriction, RefusesWhatIsNoCoefficient) {

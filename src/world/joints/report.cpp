@@ -11,21 +11,27 @@ Vec3 of_axes(uint8_t bits, Vec3 v) {
     return {(bits & 1) != 0 ? v.x : 0.0f, (bits & 2) != 0 ? v.y : 0.0f, (bits & 4) != 0 ? v.z : 0.0f};
 }
 
-// Of the locked rows of a six-degree joint.
-void find_errors(const JointAxesInfo& axes, const Quat& frame, JointState& s) {
+float lock_error(float x, float w, float at) {
+    const SinCos half = sin_cos(0.5f * at);
+    return 2.0f * (x * half.cos - w * half.sin);
+}
+
+// Of the locked rows of a six-degree joint; of angles as the solver measures them, which no angle makes singular.
+void find_errors(const JointAxesInfo& axes, const JointPose& pose, JointState& s) {
+    const Quat q = relative_rotation(pose);
     Vec3 off{}, turned{};
     for (int i = 0; i < 3; ++i) {
         const JointAxis &travel = axes.row[i], &angle = axes.row[3 + i];
         if (travel.limit.locked() && travel.limit_stiffness == 0.0f)
             off += (s.coordinates[i] - travel.limit.lower) * unit[i];
         if (angle.limit.locked() && angle.limit_stiffness == 0.0f)
-            turned += (s.coordinates[3 + i] - angle.limit.lower) * unit[i];
+            turned += lock_error(component({q.x, q.y, q.z}, i), q.w, angle.limit.lower) * unit[i];
     }
-    s.linear_error = rotate(frame, off);
+    s.linear_error = rotate(pose.a.orientation, off);
     s.angular_error = length(turned);
 }
 
-void report_rows(const WorldData& world, const JointInfo& j, const Quat& frame, JointState& s) {
+void report_rows(const WorldData& world, const JointInfo& j, const JointPose& pose, JointState& s) {
     const JointAxesInfo& axes = world.joints.axes[static_cast<size_t>(j.axes)];
     const JointCoordinates at = joint_coordinates_of(world, j, axes);
     if (j.type == JointType::distance) {
@@ -35,7 +41,7 @@ void report_rows(const WorldData& world, const JointInfo& j, const Quat& frame, 
         s.linear_error = {};
     } else if (j.type == JointType::six_degrees) {
         for (int i = 0; i < joint_coordinates; ++i) s.coordinates[i] = at.value[i], s.rates[i] = at.rate[i];
-        find_errors(axes, frame, s);
+        find_errors(axes, pose, s);
     }
 }
 
@@ -110,7 +116,7 @@ JointState World::joint(JointId id) const {
         s.velocity = dot(axis, sliding);
         s.linear_error = gap - s.position * axis;
     }
-    if (j.axes >= 0) report_rows(world, j, pose.a.orientation, s);
+    if (j.axes >= 0) report_rows(world, j, pose, s);
     if (j.type == JointType::slider || j.type == JointType::fixed)
         s.angular_error = 2.0f * arc_tangent2(length(Vec3{q.x, q.y, q.z}), q.w);
     if (report.h > 0.0f) {
