@@ -23,13 +23,17 @@ struct Axis {
     bool ranged() const { return limited && !tight(); }
 };
 
-// What they say about all six, and about two swing angles together.
+// A limit on several axes at once.
+struct Several {
+    bool present = false;
+    Axis range;
+    std::array<bool, 3> axes{};
+};
+
+// What they say about all six, and about several together.
 struct Freedoms {
     std::array<Axis, 3> linear, angular;
-    bool cone = false;
-    int cone_axis = 0;
-    double cone_angle = 0.0;
-    std::vector<std::string> approximations;
+    Several distance, cone;
 };
 
 std::vector<int> read_axes(const Field& list) {
@@ -78,13 +82,14 @@ bool add_limit(const Field& limit, Freedoms& f, std::string& why) {
         for (int axis : axes) narrow(all[static_cast<size_t>(axis)], 0.0, 0.0, limit);
         return true;
     }
-    if (is_linear || axes.size() == 3 || lower > 0.0 || f.cone) {
-        why = is_linear ? "distance limits on several axes are" : "its limits on several angles are";
+    Several& several = is_linear ? f.distance : f.cone;
+    if (several.present) {
+        why = is_linear ? "more than one distance limit is" : "more than one limit on several angles is";
         return false;
     }
-    f.cone = true;
-    f.cone_axis = 3 - axes[0] - axes[1];
-    f.cone_angle = upper;
+    several.present = true;
+    narrow(several.range, lower, upper, limit);
+    for (int axis : axes) several.axes[static_cast<size_t>(axis)] = true;
     return true;
 }
 
@@ -103,104 +108,115 @@ Limit limit_of(const Axis& axis, double farthest) {
             static_cast<float>(std::clamp(axis.upper, -farthest, farthest))};
 }
 
-// A soft limit that is a lock is a spring; hard engine limits stand for other soft limits.
+// A soft limit that is a lock is a spring.
 void set_free_axis(const Axis& axis, double farthest, JointKind& kind) {
-    if (axis.released) {
-        kind.spring.stiffness = static_cast<float>(axis.stiffness);
-        kind.spring.damping = static_cast<float>(axis.damping);
-        kind.spring.target = static_cast<float>(0.5 * (axis.lower + axis.upper));
+    if (!axis.released) {
+        kind.limit = limit_of(axis, farthest);
         return;
     }
-    if (axis.soft) kind.approximations.push_back("its soft limit is simulated as a hard one");
-    kind.limit = limit_of(axis, farthest);
+    kind.spring.stiffness = static_cast<float>(axis.stiffness);
+    kind.spring.damping = static_cast<float>(axis.damping);
+    kind.spring.target = static_cast<float>(0.5 * (axis.lower + axis.upper));
 }
 
-bool ball_kind(const Freedoms& f, JointKind& kind, std::string& why) {
+// Three free angles, a twist within bounds, or a cone.
+bool is_ball(const Freedoms& f, JointKind& kind) {
     kind.type = JointType::ball;
-    int ranged = count_if(f.angular, &Axis::ranged), free = count_if(f.angular, &Axis::free);
     auto twist_about = [&](int axis) {
         kind.axis = axis;
         kind.twist_limit = limit_of(f.angular[static_cast<size_t>(axis)], 3.14159);
     };
-    if (f.cone) {
+    const int free = count_if(f.angular, &Axis::free), locked = count_if(f.angular, &Axis::locked);
+    if (locked > 0) return false;
+    if (f.cone.present) {
+        int axis = 0, members = 0;
         for (int i = 0; i < 3; ++i) {
-            if (i != f.cone_axis && f.angular[static_cast<size_t>(i)].limited) {
-                why = "a cone with limits inside it is";
-                return false;
-            }
+            if (f.cone.axes[static_cast<size_t>(i)]) ++members;
+            else axis = i;
         }
-        kind.swing_limit = static_cast<float>(f.cone_angle);
-        twist_about(f.cone_axis);
+        bool bare =
+            members == 2 && f.cone.range.lower <= 0.0 && free >= (f.angular[static_cast<size_t>(axis)].free() ? 3 : 2);
+        if (!bare) return false;
+        kind.swing_limit = static_cast<float>(std::min(f.cone.range.upper, 4.0));
+        twist_about(axis);
         return true;
     }
     if (free == 3) return true;
-    if (free == 2) {
-        int i = 0;
-        while (f.angular[static_cast<size_t>(i)].free()) ++i;
-        twist_about(i);
-        return true;
-    }
-    if (free == 0 && ranged == 2) {
-        // A universal joint with two bounded angles: a cone about the third axis, as wide as the wider of the two.
-        int i = 0;
-        while (!f.angular[static_cast<size_t>(i)].locked()) ++i;
-        twist_about(i);
-        double widest = 0.0;
-        for (const Axis& a : f.angular) {
-            if (a.ranged()) widest = std::max({widest, std::abs(a.lower), std::abs(a.upper)});
-        }
-        kind.swing_limit = static_cast<float>(std::min(widest, 4.0));
-        kind.approximations.push_back("its two bounded angles are simulated as one cone");
-        return true;
-    }
-    why = "its combination of angle limits is";
-    return false;
+    if (free != 2) return false;
+    int i = 0;
+    while (f.angular[static_cast<size_t>(i)].free()) ++i;
+    twist_about(i);
+    return true;
 }
 
-bool classify(const Freedoms& f, JointKind& kind, std::string& why) {
-    int linear_locked = count_if(f.linear, &Axis::locked), angular_locked = count_if(f.angular, &Axis::locked);
-    bool turned = false;
-    for (const Axis& a : f.angular) turned |= a.locked() && std::abs(a.lower) > 1e-4;
-    if (turned && angular_locked != 3) {
-        why = "locking an angle away from 0 is";
-        return false;
+// Whether one of the simple types has just these freedoms.
+bool is_simple(const Freedoms& f, JointKind& kind) {
+    if (f.distance.present || f.cone.range.soft) return false;
+    for (const auto& axes : {f.linear, f.angular}) {
+        for (const Axis& a : axes) {
+            if (a.soft && !a.released) return false;
+        }
     }
-    if (linear_locked == 3 && angular_locked == 3 && !turned) {
+    const int linear_locked = count_if(f.linear, &Axis::locked), angular_locked = count_if(f.angular, &Axis::locked);
+    int turned = 0, turned_axis = 0;
+    for (int i = 0; i < 3; ++i) {
+        const Axis& a = f.angular[static_cast<size_t>(i)];
+        if (a.locked() && std::abs(a.lower) > 1e-4) turned_axis = i, ++turned;
+    }
+    if (turned > (angular_locked == 3 ? 1 : 0) || (f.cone.present && angular_locked > 0)) return false;
+    if (linear_locked == 3 && angular_locked == 3 && turned == 0) {
         kind.type = JointType::fixed;
-    } else if (linear_locked == 3 && angular_locked >= 2 && !f.cone) {
+    } else if (linear_locked == 3 && angular_locked >= 2) {
         // With all three locked, the one that is turned is a hinge held at that angle.
         kind.type = JointType::hinge;
-        kind.axis = find_if_not_locked(f.angular);
-        int away = 0;
-        for (int i = 0; i < 3; ++i) {
-            if (angular_locked == 3 && std::abs(f.angular[static_cast<size_t>(i)].lower) > 1e-4) kind.axis = i, ++away;
-        }
-        if (away > 1) {
-            why = "locking several angles away from 0 is";
-            return false;
-        }
+        kind.axis = turned == 1 ? turned_axis : find_if_not_locked(f.angular);
         set_free_axis(f.angular[static_cast<size_t>(kind.axis)], 3.14159, kind);
     } else if (linear_locked == 3) {
-        if (!ball_kind(f, kind, why)) return false;
-    } else if (linear_locked == 2 && angular_locked == 3 && !turned) {
+        if (!is_ball(f, kind)) return false;
+    } else if (linear_locked == 2 && angular_locked == 3 && turned == 0) {
         kind.type = JointType::slider;
         kind.axis = find_if_not_locked(f.linear);
         set_free_axis(f.linear[static_cast<size_t>(kind.axis)], far, kind);
     } else {
-        why = linear_locked == 2 ? "turning and sliding at once is" : "moving along more than one axis is";
         return false;
     }
     auto lock_offset = [&](const Axis& a) { return a.locked() ? static_cast<float>(0.5 * (a.lower + a.upper)) : 0.0f; };
     kind.offset = {lock_offset(f.linear[0]), lock_offset(f.linear[1]), lock_offset(f.linear[2])};
-    for (int i = 0; i < 3; ++i) {
-        bool is_hinge_axis = kind.type == JointType::hinge && i == kind.axis;
-        const Axis &l = f.linear[static_cast<size_t>(i)], &a = f.angular[static_cast<size_t>(i)];
-        if ((l.soft && l.locked()) || (a.soft && a.locked() && !is_hinge_axis)) {
-            kind.approximations.push_back("its soft locks are simulated as hard ones");
-            break;
-        }
-    }
     return true;
+}
+
+JointAxis axis_of(const Axis& given, bool angle) {
+    JointAxis axis;
+    if (given.tight()) {
+        axis.limit.lower = axis.limit.upper = static_cast<float>(0.5 * (given.lower + given.upper));
+    } else if (angle) {
+        axis.limit = limit_of(given, 3.14159);
+    } else if (given.limited) {
+        axis.limit = {static_cast<float>(given.lower), static_cast<float>(given.upper)};
+    }
+    if (given.soft && given.limited) {
+        axis.limit_stiffness = static_cast<float>(given.stiffness);
+        axis.limit_damping = static_cast<float>(given.damping);
+    }
+    return axis;
+}
+
+JointKind six_degrees(const Freedoms& f) {
+    JointKind kind;
+    kind.type = JointType::six_degrees;
+    for (size_t i = 0; i < 3; ++i) {
+        kind.axes.linear[i] = axis_of(f.linear[i], false);
+        kind.axes.angular[i] = axis_of(f.angular[i], true);
+    }
+    if (f.distance.present) {
+        kind.axes.distance = axis_of(f.distance.range, false);
+        std::copy(f.distance.axes.begin(), f.distance.axes.end(), kind.axes.distance_axes);
+    }
+    if (f.cone.present) {
+        kind.axes.swing = axis_of(f.cone.range, true);
+        std::copy(f.cone.axes.begin(), f.cone.axes.end(), kind.axes.swing_axes);
+    }
+    return kind;
 }
 
 // The one lock that is soft, null where there are more or none: the free axis of a hinge or slider with a spring, if
@@ -232,21 +248,32 @@ JointDrive read_drive(const Field& field) {
     return drive;
 }
 
-// Drives on the free axis are kept, those on a locked one do nothing, others are named.
-void add_drives(const Field& drives, const Freedoms& f, JointKind& kind) {
+// Drives on axes that are not locked.
+std::vector<JointDrive> read_drives(const Field& drives, const Freedoms& f, std::vector<std::string>& approximations) {
+    std::vector<JointDrive> out;
     for (size_t i = 0; i < drives.size(); ++i) {
         Field field = drives.at(i);
         const std::string& type = field["type"].text();
         if (type != "linear" && type != "angular") field["type"].refuse("must be linear or angular");
-        int axis = field["axis"].index(3, "the axes");
+        const int axis = field["axis"].index(3, "the axes");
         JointDrive drive = read_drive(field);
-        bool is_free_axis = axis == kind.axis && ((type == "angular" && kind.type == JointType::hinge) ||
-                                                  (type == "linear" && kind.type == JointType::slider));
-        const Axis& driven = (type == "linear" ? f.linear : f.angular)[static_cast<size_t>(axis)];
-        if (is_free_axis && !kind.drive) kind.drive = drive;
-        else if (is_free_axis) kind.approximations.push_back("only the first of its drives on one axis is simulated");
-        else if (!driven.locked()) kind.approximations.push_back("its drive on a ball joint is not simulated");
+        const bool angular = type == "angular";
+        const Axis& driven = (angular ? f.angular : f.linear)[static_cast<size_t>(axis)];
+        if ((driven.locked() && !driven.soft) || (drive.stiffness == 0.0f && drive.damping == 0.0f)) continue;
+        drive.axis = angular ? 3 + axis : axis;
+        bool taken = std::any_of(out.begin(), out.end(), [&](const JointDrive& d) { return d.axis == drive.axis; });
+        if (taken) approximations.push_back("only the first of its drives on one axis is simulated");
+        else out.push_back(drive);
     }
+    return out;
+}
+
+// Hinges and sliders take one drive, on their free axis, and no other spring.
+bool takes(const JointKind& kind, const std::vector<JointDrive>& drives) {
+    if (drives.empty()) return true;
+    if (drives.size() > 1 || kind.spring.stiffness > 0.0f) return false;
+    if (kind.type == JointType::hinge) return drives[0].axis == 3 + kind.axis;
+    return kind.type == JointType::slider && drives[0].axis == kind.axis;
 }
 
 }  // namespace
@@ -257,25 +284,23 @@ std::optional<JointKind> joint_kind(const Field& description, std::string& why) 
     for (size_t i = 0; i < limits.size(); ++i) {
         if (!add_limit(limits.at(i), f, why)) return std::nullopt;
     }
-    JointKind kind;
-    bool contradiction = false;
-    for (const auto& axes : {f.linear, f.angular}) {
-        for (const Axis& a : axes) contradiction |= a.lower > a.upper;
-    }
-    if (contradiction) {
+    auto excludes = [](const Axis& a) { return a.lower > a.upper; };
+    if (std::any_of(f.linear.begin(), f.linear.end(), excludes) ||
+        std::any_of(f.angular.begin(), f.angular.end(), excludes)) {
         why = "a pair of limits that exclude each other is";
         return std::nullopt;
     }
-    bool is_sprung = false;
-    if (Axis* sprung = only_soft_lock(f)) {
-        sprung->released = true;
-        std::string ignored;
-        is_sprung = classify(f, kind, ignored) && kind.spring.stiffness > 0.0f;
-        sprung->released = is_sprung;
-        if (!is_sprung) kind = {};
+    std::vector<std::string> approximations;
+    std::vector<JointDrive> drives = read_drives(description["drives"], f, approximations);
+    JointKind kind;
+    Axis* sprung = only_soft_lock(f);
+    if (sprung) sprung->released = true;
+    if (!is_simple(f, kind) || !takes(kind, drives)) {
+        if (sprung) sprung->released = false;
+        kind = six_degrees(f);
     }
-    if (!is_sprung && !classify(f, kind, why)) return std::nullopt;
-    add_drives(description["drives"], f, kind);
+    kind.drives = std::move(drives);
+    kind.approximations = std::move(approximations);
     return kind;
 }
 

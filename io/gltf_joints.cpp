@@ -86,7 +86,12 @@ private:
         // A body that only stands in for the fixed world keeps colliding.
         def.collide_connected = collide || !a.own_collider || !b.own_collider;
         def.name = tree_.nodes[static_cast<size_t>(node)].name;
-        if (kind.drive) set_drive(*kind.drive, kind.type, a, b, at(to_float(frame_a.origin)), def);
+        def.axes = kind.axes;
+        for (const JointDrive& drive : kind.drives) {
+            Spring spring = spring_of(drive, a, b, frame_a);
+            if (kind.type != JointType::six_degrees) def.spring = spring;
+            else (drive.axis < 3 ? def.axes.linear[drive.axis] : def.axes.angular[drive.axis - 3]).spring = spring;
+        }
         Result<JointId> added = world_.add_joint(def);
         if (!added.ok()) refuse(where, added.error().message, added.error().code);
     }
@@ -129,37 +134,29 @@ private:
         return fixed_world_ = world_.add_static_body(def).value();
     }
 
-    // 1 / effective mass (1/kg) of the axis for sliders, 1 / effective inertia about it for hinges. A hinge turns a
-    // body about a point beside its centre of mass, which adds m r^2 (Steiner).
-    float inverse_effective(const End& end, JointType type, Position anchor, Vec3 axis) const {
+    // 1 / effective mass (1/kg) along an axis, 1 / effective inertia about one. A joint turns a body about a point
+    // beside its centre of mass, which adds m r^2 (Steiner).
+    float inverse_effective(const End& end, bool along, Position anchor, Vec3 axis) const {
         if (world_.get_static(end.body).type() != BodyType::dynamic) return 0.0f;
         const RigidBodyRef body = static_cast<const World&>(world_).get(end.body);
-        if (type == JointType::slider) return body.inverse_mass();
+        if (along) return body.inverse_mass();
         float about_centre = 1.0f / dot(axis, body.inverse_inertia() * axis);
         Vec3 arm = cross(axis, body.centre_of_mass() - anchor);
         return 1.0f / (about_centre + body.mass() * length_squared(arm));
     }
 
-    // A drive's force is k (x_target - x) + c (v_target - v). With a stiffness this is a spring towards the target
-    // moved by c v_target / k. Without one, at v_target != 0, it is a motor that starts with the force c v_target; at
-    // v_target = 0 it only damps, and a spring too weak to notice carries the damping.
-    void set_drive(const JointDrive& drive, JointType type, const End& a, const End& b, Position anchor,
-                   JointDef& def) {
+    // A drive's force is k (x_target - x) + c (v_target - v), a spring.
+    Spring spring_of(const JointDrive& drive, const End& a, const End& b, const NodeFrame& frame) const {
         float scale = 1.0f;
         if (drive.acceleration) {
-            Vec3 axis = rotate(a.pose.orientation * def.frame_a.rotation, Vec3{1.0f, 0.0f, 0.0f});
-            float inverse = inverse_effective(a, type, anchor, axis) + inverse_effective(b, type, anchor, axis);
+            constexpr Vec3 axes[3] = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
+            Position anchor = at(to_float(frame.origin));
+            Vec3 axis = rotate(frame.orientation(), axes[drive.axis % 3]);
+            float inverse =
+                inverse_effective(a, drive.axis < 3, anchor, axis) + inverse_effective(b, drive.axis < 3, anchor, axis);
             scale = inverse > 0.0f ? 1.0f / inverse : 0.0f;
         }
-        float stiffness = scale * drive.stiffness, damping = scale * drive.damping;
-        if (stiffness > 0.0f) {
-            float target = drive.position + drive.damping / drive.stiffness * drive.velocity;
-            def.spring = {stiffness, damping, target, drive.max_force};
-        } else if (damping > 0.0f && drive.velocity != 0.0f) {
-            def.motor = {drive.velocity, minimum(drive.max_force, damping * absolute(drive.velocity))};
-        } else if (damping > 0.0f) {
-            def.spring = {1e-6f * damping, damping, 0.0f, drive.max_force};
-        }
+        return {scale * drive.stiffness, scale * drive.damping, drive.position, drive.max_force, drive.velocity};
     }
 
     World& world_;

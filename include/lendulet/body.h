@@ -41,6 +41,15 @@ struct Material {
         static_friction{};  // >= 0; a contact sticks while the tangential impulse it needs is <= this * N
     std::optional<float> dynamic_friction{};  // >= 0; otherwise it slides with this * N against the sliding direction
     std::optional<float> restitution{};       // 0 (dead) .. 1 (elastic)
+    // What resists rolling, as the arm of the normal force, m, >= 0: turning about axes in the contact's plane meets at
+    // most the torque rolling_friction * N, so that a rolling ball slows by 5/7 g rolling_friction / radius. Combined
+    // by friction_combine, of which only `multiply` makes no sense for lengths.
+    float rolling_friction = 0.0f;
+    // The same for turning about the contact's normal, beside what friction over several points resists.
+    float spinning_friction = 0.0f;
+    // Share of the slip at an impact that turns round, 0 (it stops at most) .. 1 (a superball), as far as friction
+    // allows. In impacts that bounce only. Combined by restitution_combine.
+    float tangential_restitution = 0.0f;
     CombineRule friction_combine = CombineRule::average;
     CombineRule restitution_combine = CombineRule::maximum;
 };
@@ -78,6 +87,7 @@ struct RigidBodyDef {
     std::optional<float> friction{};          // static and dynamic alike; unset: the world's default
     std::optional<float> dynamic_friction{};  // unset: `friction`
     std::optional<float> restitution{};
+    float rolling_friction = 0.0f, spinning_friction = 0.0f, tangential_restitution = 0.0f;  // see Material
     CollisionFilter filter{};
     std::span<const ColliderDef> colliders{};
 
@@ -105,6 +115,7 @@ struct StaticBodyDef {
     std::optional<float> friction{};
     std::optional<float> dynamic_friction{};
     std::optional<float> restitution{};
+    float rolling_friction = 0.0f, spinning_friction = 0.0f, tangential_restitution = 0.0f;  // see Material
     CollisionFilter filter{};
     std::span<const ColliderDef> colliders{};
     uint64_t user_data = 0;

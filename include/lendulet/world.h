@@ -133,7 +133,8 @@ public:
     // Errors: stale_id, wrong_world, bad_joint, no_dynamic_body, non_finite.
     Result<JointId> add_joint(const JointDef& def);
     Status remove_joint(JointId id);
-    Status set_motor(JointId id, Motor motor);
+    Status set_motor(JointId id, Motor motor);                         // of a hinge, slider or distance joint
+    Status set_motor(JointId id, Coordinate coordinate, Motor motor);  // of a six-degree joint
     // A joint's frames on its two bodies from one frame in the world (x axis along `axis`).
     Result<JointDef> joint_at(JointType type, BodyId a, BodyId b, Position anchor,
                               Vec3 axis = {1.0f, 0.0f, 0.0f}) const;

@@ -1,5 +1,7 @@
 #include "dynamics/collider_store.h"
 
+#include "geometry/triangle_surface.h"
+
 namespace lendulet {
 namespace {
 
@@ -31,6 +33,19 @@ ContactSurface combine(const Surface& a, const Surface& b) {
     // A surface that slides harder than it sticks would gain energy from the difference.
     s.static_friction = maximum(s.static_friction, s.dynamic_friction);
     return s;
+}
+
+ExtraSurface combine_extra(const Surface& a, const Surface& b) {
+    CombineRule friction = stronger(a.friction_combine, b.friction_combine);
+    CombineRule restitution = stronger(a.restitution_combine, b.restitution_combine);
+    return {combine(friction, a.rolling_friction, b.rolling_friction),
+            combine(friction, a.spinning_friction, b.spinning_friction),
+            combine(restitution, a.tangential_restitution, b.tangential_restitution)};
+}
+
+const Surface& ColliderStore::surface_at(uint32_t slot, int32_t triangle) const {
+    if (triangle < 0 || materials[slot].empty()) return surface[slot];
+    return materials[slot][TriangleSurface(geometry[slot]).material(static_cast<uint32_t>(triangle))];
 }
 
 uint32_t ColliderStore::add() {

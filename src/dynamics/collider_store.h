@@ -16,6 +16,10 @@ namespace lendulet {
 struct Surface {
     float static_friction, dynamic_friction, restitution;
     CombineRule friction_combine, restitution_combine;
+    float rolling_friction = 0.0f, spinning_friction = 0.0f, tangential_restitution = 0.0f;
+    bool has_extra() const {
+        return rolling_friction > 0.0f || spinning_friction > 0.0f || tangential_restitution > 0.0f;
+    }
 };
 
 // The surface of a contact. Where rules disagree the one that comes first in CombineRule wins.
@@ -23,6 +27,11 @@ struct ContactSurface {
     float static_friction, dynamic_friction, restitution;
 };
 ContactSurface combine(const Surface& a, const Surface& b);
+// And what few surfaces have; by the same rules.
+struct ExtraSurface {
+    float rolling_friction, spinning_friction, tangential_restitution;
+};
+ExtraSurface combine_extra(const Surface& a, const Surface& b);
 
 inline bool filters_match(const CollisionFilter& a, const CollisionFilter& b) {
     if (a.group != 0 && a.group == b.group) return false;
@@ -61,6 +70,8 @@ struct ColliderStore {
         : slots(memory, world), geometry(memory), local(memory), surface(memory), info(memory), place(memory) {}
 
     uint32_t add();
+    // The surface of a collider at one of its triangles (number in the user's list), or at none: -1.
+    const Surface& surface_at(uint32_t slot, int32_t triangle) const;
     ColliderId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }
     bool alive(ColliderId c) const { return slots.alive(c.index, c.generation); }
     void update_place(uint32_t slot, Quat body_orientation) {

@@ -2,7 +2,7 @@
 
 namespace lendulet {
 
-uint32_t JointStore::add(const JointInfo& joint, std::string_view joint_name) {
+uint32_t JointStore::add(const JointInfo& joint, const JointAxesInfo* rows, std::string_view joint_name) {
     uint32_t slot = slots.add();
     size_t n = slots.capacity();
     info.resize(n);
@@ -11,6 +11,13 @@ uint32_t JointStore::add(const JointInfo& joint, std::string_view joint_name) {
     next_.resize(2 * n, no_joint_link);
     if (name.size() < n) name.resize(n);
     info[slot] = joint;
+    info[slot].axes = -1;
+    if (rows) {
+        if (free_axes_.empty()) free_axes_.push_back(static_cast<int32_t>(axes.size())), axes.push_back(*rows);
+        info[slot].axes = free_axes_.back();
+        free_axes_.pop_back();
+        axes[static_cast<size_t>(info[slot].axes)] = *rows;
+    }
     impulses[slot] = {};
     record[slot] = -1;
     name[slot] = std::string(joint_name);
@@ -22,6 +29,7 @@ uint32_t JointStore::add(const JointInfo& joint, std::string_view joint_name) {
 void JointStore::remove(uint32_t slot) {
     unhang(info[slot].body_a, 2 * slot);
     unhang(info[slot].body_b, 2 * slot + 1);
+    if (info[slot].axes >= 0) free_axes_.push_back(info[slot].axes);
     name[slot].clear();
     slots.remove(slot);
 }

@@ -28,7 +28,15 @@ struct JointInfo {
     Spring spring{};
     float swing_limit = 4.0f;
     Limit twist_limit{};
+    int32_t axes = -1;  // six_degrees and distance: index in JointStore::axes
     uint64_t user_data = 0;
+};
+
+// The rows of a joint whose rows are data, and what the solver leaves of each: impulses on B, N s and N m s.
+struct JointAxesInfo {
+    JointAxis row[joint_coordinates];
+    uint8_t distance_axes = 0, swing_axes = 0;  // bits
+    float limit[joint_coordinates]{}, motor[joint_coordinates]{}, spring[joint_coordinates]{};
 };
 
 // What the solver leaves of a joint: impulses on B of the last substep. Linear ones along world axes (sliders: y and z
@@ -48,14 +56,22 @@ struct JointStore {
     Slots slots;
     Array<JointInfo> info;
     Array<JointImpulses> impulses;
-    Array<int32_t> record;  // index of its JointRecord while it is solved, or -1
+    Array<int32_t> record;      // index of its JointRecord while it is solved, or -1
+    Array<JointAxesInfo> axes;  // by JointInfo::axes
     std::vector<std::string> name;
 
     JointStore(const Memory* memory, uint32_t world)
-        : slots(memory, world), info(memory), impulses(memory), record(memory), next_(memory), first_(memory) {}
+        : slots(memory, world),
+          info(memory),
+          impulses(memory),
+          record(memory),
+          axes(memory),
+          next_(memory),
+          first_(memory),
+          free_axes_(memory) {}
 
-    // A new joint; hangs it on both bodies.
-    uint32_t add(const JointInfo& joint, std::string_view name);
+    // A new joint; hangs it on both bodies. `rows` of joints that have such, else null.
+    uint32_t add(const JointInfo& joint, const JointAxesInfo* rows, std::string_view name);
     void remove(uint32_t slot);
     JointId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }
     bool alive(JointId joint) const { return slots.alive(joint.index, joint.generation); }
@@ -80,8 +96,9 @@ private:
     void hang(uint32_t body, uint32_t link);
     void unhang(uint32_t body, uint32_t link);
 
-    Array<uint32_t> next_;   // by link
-    Array<uint32_t> first_;  // by body
+    Array<uint32_t> next_;      // by link
+    Array<uint32_t> first_;     // by body
+    Array<int32_t> free_axes_;  // places in `axes` that no joint has
 };
 
 }  // namespace lendulet

@@ -7,7 +7,8 @@
 namespace lendulet {
 namespace {
 
-constexpr int contact_classes = 3;
+// By room for points; those that resist rolling are classes of their own.
+constexpr int size_classes = 3, contact_classes = 2 * size_classes;
 
 // Lowest colour free at all given bodies, or -1.
 int free_colour(uint32_t used, int colours) {
@@ -46,8 +47,9 @@ void ColourSorter::end() {
     for (size_t k = 1; k < counts_.size(); ++k) counts_[k] += counts_[k - 1];
 }
 
-void ColourSchedule::build(const ContactRecord* records, const uint32_t* list, int count, const SolverBodies& bodies,
-                           const SolverKernels& kernels, const SolverKernels& scalar_kernels) {
+void ColourSchedule::build(const ContactRecord* records, ContactExtra* extras, const uint32_t* list, int count,
+                           const SolverBodies& bodies, const SolverKernels& kernels,
+                           const SolverKernels& scalar_kernels) {
     groups.clear();
     colour_ends.clear();
     first_overflow_group = overflow = 0;
@@ -58,7 +60,8 @@ void ColourSchedule::build(const ContactRecord* records, const uint32_t* list, i
         if (i + prefetch_distance < count) prefetch(&records[list[i + prefetch_distance]]);
         const ContactRecord& r = records[list[i]];
         bool moved_a = bodies.state[static_cast<size_t>(r.body_a)].inverse_mass > 0.0f;
-        sorter_.add(r.body_a, moved_a, r.body_b, true, row_class(r.point_count));
+        sorter_.add(r.body_a, moved_a, r.body_b, true,
+                    row_class(r.point_count) + ((r.flags & contact_rolls) != 0 ? size_classes : 0));
     }
     sorter_.end();
 
@@ -74,20 +77,32 @@ void ColourSchedule::build(const ContactRecord* records, const uint32_t* list, i
         last_colour = colour;
         const SolverKernels& table = alone ? scalar_kernels : kernels;
         ContactGroup g;
-        g.points = 1 << c;
+        const bool rolls = c >= size_classes;
+        const int size = c % size_classes;
+        g.points = 1 << size;
         g.fixed_a = colour >= ColourSorter::moving_colours && !alone;
-        g.filler = c;
+        g.filler = size;
         g.count = static_cast<int>(n);
         g.order = order.data() + begin;
         g.rows = reinterpret_cast<std::byte*>(bytes);  // an offset until the block is allocated below
-        bytes += table.row_bytes[c] * block_count(n, table.width);
+        bytes += table.row_bytes[size] * block_count(n, table.width);
+        g.rolling = nullptr;
+        g.extras = nullptr;
+        if (rolls) {
+            g.rolling = reinterpret_cast<std::byte*>(bytes);
+            g.extras = extras;
+            bytes += table.rolling_bytes * block_count(n, table.width);
+        }
         groups.push_back(g);
     });
     if (groups.count() > 0) colour_ends.push_back(groups.count());
     if (first_overflow_group < 0) first_overflow_group = groups.count();
     overflow = sorter_.overflow();
     rows.resize_unset(bytes);
-    for (ContactGroup& g : groups) g.rows = rows.data() + reinterpret_cast<size_t>(g.rows);
+    for (ContactGroup& g : groups) {
+        g.rows = rows.data() + reinterpret_cast<size_t>(g.rows);
+        if (g.extras) g.rolling = rows.data() + reinterpret_cast<size_t>(g.rolling);
+    }
     sorter_.fill([&](uint32_t place, uint32_t i) { order[place] = list[i]; });
 }
 

@@ -76,9 +76,10 @@ struct ColourSchedule {
     explicit ColourSchedule(const Memory* memory)
         : order(memory), groups(memory), colour_ends(memory), rows(memory), sorter_(memory) {}
 
-    // Colours the `count` records that `list` names. Where only one body of a record is moved, it is B.
-    void build(const ContactRecord* records, const uint32_t* list, int count, const SolverBodies& bodies,
-               const SolverKernels& kernels, const SolverKernels& scalar_kernels);
+    // Colours the `count` records that `list` names. Where only one body of a record is moved, it is B. `extras`, by
+    // record, may be null where no contact resists rolling.
+    void build(const ContactRecord* records, ContactExtra* extras, const uint32_t* list, int count,
+               const SolverBodies& bodies, const SolverKernels& kernels, const SolverKernels& scalar_kernels);
     int colour_count() const { return colour_ends.count(); }
     // So that it can hold what `other` holds as well without asking for memory; before build().
     void make_room(const ColourSchedule& other) {

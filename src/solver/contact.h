@@ -37,5 +37,16 @@ struct alignas(64) ContactRecord {
 static_assert(sizeof(ContactRecord) == 192);
 
 inline constexpr uint32_t contact_flipped = 1;  // A and B are exchanged against the order of the two colliders
+inline constexpr uint32_t contact_rolls = 2;    // it resists rolling or spinning: see ContactExtra
+
+// What few contacts have, by record, where any material of the world has it.
+struct ContactExtra {
+    float rolling, spinning;       // greatest torque per normal force against rolling and about the normal, m
+    float tangential_restitution;  // share of the slip at an impact that turns round, 0 .. 1
+    float impulse[3];              // the result: against turning, on B in the last substep, world axes, N m s
+    float h;                       // that substep, s
+    uint32_t pair, key;            // the manifold that the impulse is of, ...
+    uint32_t step;                 // ... and in which step it was
+};
 
 }  // namespace lendulet

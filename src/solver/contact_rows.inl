@@ -141,13 +141,6 @@ LENDULET_FORCE_INLINE void load_displacement_at(const BodyState* s, const int32_
     dp = {p[0], p[1], p[2]};
     dq = {p[4], p[5], p[6], p[7]};
 }
-// R(dq)^T n - n, without the cancellation of computing the rotated vector first.
-template <class F>
-LENDULET_FORCE_INLINE Vec3T<F> turned_back(QuatT<F> dq, Vec3T<F> n) {
-    Vec3T<F> u{-dq.x, -dq.y, -dq.z};
-    Vec3T<F> c = cross(u, cross(u, n) + dq.w * n);
-    return c + c;
-}
 template <class F>
 LENDULET_FORCE_INLINE F inverse_or_zero(F k) {
     return select(k > splat<F>(0.0f), splat<F>(1.0f) / k, splat<F>(0.0f));

@@ -64,9 +64,21 @@ struct Side {
     }
 };
 
+// How the velocity along u changes per unit impulse along n.
+float coupling(const Side& s, Vec3 u, Vec3 n) { return dot(cross(s.arm, u), s.inverse_inertia * cross(s.arm, n)); }
+
+// The largest impulse f against the slip s along u with which the impact adds no energy. The impulse J along n alone
+// takes `lost` of it, f changes it by K_uu f^2 / 2 - s f - K_un J f: bodies other than balls answer along both to
+// either.
+float elastic_limit(const Side& a, const Side& b, Vec3 n, Vec3 u, float normal_impulse, float slide, float lost) {
+    float effective = a.effectiveness(u) + b.effectiveness(u);
+    float pull = slide + (coupling(a, u, n) + coupling(b, u, n)) * normal_impulse;
+    return (pull + square_root(pull * pull + 2.0f * effective * lost)) / effective;
+}
+
 // One point of a manifold; true where it bounced.
 bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPointRecord& point,
-                  const SubstepConstants& k) {
+                  float tangential_restitution, const SubstepConstants& k) {
     Side a(bodies, r.body_a), b(bodies, r.body_b);
     Vec3 n = load(r.normal), ra0 = load(point.position), offset = load(r.arm_offset), rb0 = ra0 - offset;
     float half_gap = 0.5f * point.separation;
@@ -104,11 +116,12 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
     float slide = length(slip);
     if (slide > 1e-9f) {
         Vec3 u = (1.0f / slide) * slip;
-        float stopping = slide / (a.effectiveness(u) + b.effectiveness(u));
+        float stopping = (1.0f + tangential_restitution) * slide / (a.effectiveness(u) + b.effectiveness(u));
         // Static and sliding friction on the whole normal impulse (thesis 3.3.4, magnitudes as in THESIS-NOTES).
         float friction =
             stopping <= r.static_friction * normal_impulse ? stopping : r.dynamic_friction * normal_impulse;
-        impulse -= friction * u;
+        float lost = 0.5f * (1.0f - r.restitution) * speed * normal_impulse;
+        impulse -= minimum(friction, elastic_limit(a, b, n, u, normal_impulse, slide, lost)) * u;
     }
     a.apply(-impulse, time);
     b.apply(impulse, time);
@@ -117,14 +130,16 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
 
 }  // namespace
 
-bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, const uint32_t* list, int count,
+bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, BouncingList bouncing,
                      const SubstepConstants& k) {
     bool any = false;
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         bool bounced = false;
-        for (int i = 0; i < count; ++i) {
-            const ContactRecord& r = records[list[i]];
-            for (int j = 0; j < r.point_count; ++j) bounced |= bounce_point(bodies, r, r.points[j], k);
+        for (int i = 0; i < bouncing.count; ++i) {
+            const uint32_t record = bouncing.list[i];
+            const ContactRecord& r = records[record];
+            const float back = bouncing.extras ? bouncing.extras[record].tangential_restitution : 0.0f;
+            for (int j = 0; j < r.point_count; ++j) bounced |= bounce_point(bodies, r, r.points[j], back, k);
         }
         any |= bounced;
         if (!bounced) break;

@@ -9,11 +9,19 @@
 
 namespace lendulet {
 
+// Records that can bounce, in order, and what some of them have beside; null where none has.
+struct BouncingList {
+    const uint32_t* list;
+    int count;
+    const ContactExtra* extras;
+};
+
 // Finds the points that will meet within the substep faster than k.bounce_speed, gives both bodies Newton's impulse
-// with Coulomb friction on the whole of it (restitution included), and shifts them so that it acted at the time of
-// impact. Sweeps over `list` (indices of records, in order) until no point approaches, at most 8 times, so that
+// with Coulomb friction on the whole of it (restitution included; with tangential restitution it may turn the slip
+// round), and shifts them so that it acted at the time of
+// impact. Sweeps over the list until no point approaches, at most 8 times, so that
 // impulses travel through touching bodies one by one, as in a cradle. Returns whether any body was displaced.
-bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, const uint32_t* list, int count,
+bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, BouncingList bouncing,
                      const SubstepConstants& k);
 
 }  // namespace lendulet

@@ -33,11 +33,14 @@ struct ContactGroup {
     int count;
     const uint32_t* order;  // indices of the records
     std::byte* rows;
+    std::byte* rolling;    // rows against rolling, or null
+    ContactExtra* extras;  // by record, where `rolling` is not null
 };
 
 struct SolverKernels {
     int width;
-    size_t row_bytes[3];  // of one block of `width` manifolds with 1, 2, 4 points
+    size_t row_bytes[3];   // of one block of `width` manifolds with 1, 2, 4 points
+    size_t rolling_bytes;  // and of their rows against rolling
 
     // Contacts: blocks [begin, end) of a group.
     void (*prepare)(const ContactGroup&, const ContactRecord*, const SolverBodies&, int begin, int end);

@@ -2,6 +2,7 @@
 // the namespace that keeps the copies apart, so that the linker can never give a unit the code of a wider machine.
 #include <type_traits>
 
+#include "math/turned.h"
 #include "math/wide/gather.h"
 #include "math/wide/wide.h"
 #include "solver/kernels.h"
@@ -11,6 +12,8 @@ namespace {
 
 #include "solver/contact_rows.inl"
 
+#include "solver/rolling.inl"
+
 #include "solver/body_rows.inl"
 
 template <int W>
@@ -19,9 +22,20 @@ void prepare_group(const ContactGroup& g, const ContactRecord* records, const So
     if (g.points == 1) prepare_rows<W, 1>(g, records, bodies, begin, end);
     else if (g.points == 2) prepare_rows<W, 2>(g, records, bodies, begin, end);
     else prepare_rows<W, 4>(g, records, bodies, begin, end);
+    if (!g.rolling) return;
+    if (g.points == 1) prepare_rolling<W, 1>(g, bodies, begin, end);
+    else if (g.points == 2) prepare_rolling<W, 2>(g, bodies, begin, end);
+    else prepare_rolling<W, 4>(g, bodies, begin, end);
+}
+template <int W, bool warm>
+void roll_group(const ContactGroup& g, SolverBodies& bodies, int begin, int end) {
+    if (g.points == 1) run_rolling<W, 1, warm>(g, bodies, begin, end);
+    else if (g.points == 2) run_rolling<W, 2, warm>(g, bodies, begin, end);
+    else run_rolling<W, 4, warm>(g, bodies, begin, end);
 }
 template <int W, Pass pass>
 void pass_group(const ContactGroup& g, SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
+    if (pass != Pass::solve && g.rolling) roll_group<W, pass == Pass::warm_start>(g, bodies, begin, end);
     if (g.points == 1) run_pass<W, 1, pass>(g, bodies, k, begin, end);
     else if (g.points == 2) run_pass<W, 2, pass>(g, bodies, k, begin, end);
     else run_pass<W, 4, pass>(g, bodies, k, begin, end);
@@ -31,12 +45,17 @@ void store_group(const ContactGroup& g, ContactRecord* records, int begin, int e
     if (g.points == 1) store_rows<W, 1>(g, records, begin, end);
     else if (g.points == 2) store_rows<W, 2>(g, records, begin, end);
     else store_rows<W, 4>(g, records, begin, end);
+    if (!g.rolling) return;
+    if (g.points == 1) store_rolling<W, 1>(g, begin, end);
+    else if (g.points == 2) store_rolling<W, 2>(g, begin, end);
+    else store_rolling<W, 4>(g, begin, end);
 }
 
 template <int W>
 constexpr SolverKernels make_kernels() {
     return {W,
             {sizeof(ContactRow<W, 1>), sizeof(ContactRow<W, 2>), sizeof(ContactRow<W, 4>)},
+            sizeof(RollingRow<W>),
             prepare_group<W>,
             pass_group<W, Pass::warm_start>,
             pass_group<W, Pass::solve>,

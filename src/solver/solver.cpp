@@ -46,8 +46,9 @@ void Solver::for_each_group(TaskPool& tasks, Run&& run) {
 }
 
 void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, const uint32_t* list,
-                     int count) {
-    schedule_.build(records, list, count, bodies, kernels_, scalar_);
+                     int count, ContactExtra* extras) {
+    extras_ = extras;
+    schedule_.build(records, extras, list, count, bodies, kernels_, scalar_);
     bouncing_.clear();
     for (int i = 0; i < count; ++i) {
         if (i + prefetch_distance < count) prefetch(&records[list[i + prefetch_distance]].restitution);
@@ -58,9 +59,9 @@ void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord*
     });
 }
 
-void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointRecord* joints, int count, ContactList contacts,
+void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joints, ContactList contacts,
                             JointReuse reuse) {
-    joints_.prepare(tasks, bodies, joints, count, contacts, reuse);
+    joints_.prepare(tasks, bodies, joints, contacts, reuse);
 }
 
 void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
@@ -74,7 +75,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
         k.last = substep == settings.substeps - 1;
         k.repeat_scale = substep == 1 ? 2.0f : 1.0f;  // the first substep began with half a kick
         k.end_scale = settings.substeps > 1 ? 0.5f : 1.0f;
-        k.moved = resolve_impacts(bodies, records, bouncing_.data(), bouncing_.count(), k);
+        k.moved = resolve_impacts(bodies, records, {bouncing_.data(), bouncing_.count(), extras_}, k);
         for_each_body_block(tasks, range, [&](int begin, int end) { kernels_.kick(bodies, k, begin, end); });
         if (k.first)
             for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {

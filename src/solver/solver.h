@@ -43,8 +43,10 @@ public:
           kernels_(solver_kernels(width)),
           scalar_(solver_kernels(1)) {}
 
-    // Colours the manifolds that `list` names and packs them into rows.
-    void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, const uint32_t* list, int count);
+    // Colours the manifolds that `list` names and packs them into rows. `extras`, by record: see ContactExtra; null
+    // where no material has any.
+    void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, const uint32_t* list, int count,
+                 ContactExtra* extras = nullptr);
     // So that contacts of `other` may become this one's without asking for memory; before prepare().
     void make_room(const Solver& other) {
         schedule_.make_room(other.schedule_);
@@ -52,7 +54,7 @@ public:
     }
     // Colours the joints and packs them; after prepare() and with the same contacts, in every step. `joints` must stay
     // until store_joints(), and until the next call where that one reuses them.
-    void prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointRecord* joints, int count, ContactList contacts,
+    void prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joints, ContactList contacts,
                         JointReuse reuse = {});
     // Runs the substeps; bodies of the range move: all that the contacts and joints given name, and others as well.
     void solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
@@ -77,6 +79,7 @@ private:
 
     ColourSchedule schedule_;
     Array<uint32_t> bouncing_;  // records that can bounce
+    const ContactExtra* extras_ = nullptr;
     JointSolver joints_;
     const SolverKernels& kernels_;
     const SolverKernels& scalar_;

@@ -40,7 +40,14 @@ Result<Surface> make_surface(const WorldConfig& config, const Material& m, const
     if (!sliding) return sliding.error();
     Result<float> bounce = coefficient(m.restitution, config.restitution, 1.0f, "restitution", call);
     if (!bounce) return bounce.error();
-    return Surface{fixed.value(), sliding.value(), bounce.value(), m.friction_combine, m.restitution_combine};
+    Result<float> rolling = coefficient(m.rolling_friction, 0.0f, 1e6f, "rolling friction", call);
+    if (!rolling) return rolling.error();
+    Result<float> spinning = coefficient(m.spinning_friction, 0.0f, 1e6f, "spinning friction", call);
+    if (!spinning) return spinning.error();
+    Result<float> turned = coefficient(m.tangential_restitution, 0.0f, 1.0f, "tangential restitution", call);
+    if (!turned) return turned.error();
+    return Surface{fixed.value(),         sliding.value(), bounce.value(),   m.friction_combine,
+                   m.restitution_combine, rolling.value(), spinning.value(), turned.value()};
 }
 
 // The table of materials that a collider's triangles choose from.
@@ -104,6 +111,9 @@ std::vector<ColliderDef> colliders_of(const Def& def, float density) {
     one.material.static_friction = def.friction;
     one.material.dynamic_friction = def.dynamic_friction ? def.dynamic_friction : def.friction;
     one.material.restitution = def.restitution;
+    one.material.rolling_friction = def.rolling_friction;
+    one.material.spinning_friction = def.spinning_friction;
+    one.material.tangential_restitution = def.tangential_restitution;
     one.filter = def.filter;
     one.density = density;
     return {one};
@@ -180,6 +190,8 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
         if (!ci.is_trigger) info.depth = minimum(info.depth, ci.depth);
         world.colliders.geometry[slot] = c.geometry;
         world.colliders.surface[slot] = c.surface;
+        world.has_extras |= c.surface.has_extra();
+        for (const Surface& s : c.materials) world.has_extras |= s.has_extra();
         world.colliders.materials[slot] = std::move(c.materials);
         world.colliders.given[slot] = c.def.local;
         world.colliders.local[slot] = to_principal * c.def.local;

@@ -38,9 +38,9 @@ void prepare_solvers(WorldData& world, float dt) {
         const SolverPart& part = world.parts[c];
         ContactList contacts{records, world.active.data() + part.first_contact, part.contact_count, dt};
         world.solvers[c].prepare(world.tasks, world.solver_bodies, records, world.active.data() + part.first_contact,
-                                 part.contact_count);
-        world.solvers[c].prepare_joints(world.tasks, world.solver_bodies, world.joint_records.data() + part.first_joint,
-                                        part.joint_count, contacts, reuse);
+                                 part.contact_count, world.has_extras ? world.extras.data() : nullptr);
+        JointList joints{world.joint_records.data() + part.first_joint, part.joint_count, world.joint_axes.data()};
+        world.solvers[c].prepare_joints(world.tasks, world.solver_bodies, joints, contacts, reuse);
         // Islands go up by any number of classes and come down one by one, also long after all has come to rest.
         if (c > 0 && part.contact_count > 0) world.solvers[c - 1].make_room(world.solvers[c]);
     }
@@ -68,6 +68,8 @@ void step(WorldData& world, float dt, bool last) {
     choose_substeps(world, dt);
     pack_bodies(world, dt);
     pack_contacts(world);
+    limit_recovery(world, dt);
+    pack_extras(world, dt);
     prepare_solvers(world, dt);
     clock.lap(Stage::prepare);
     for (int c = 0; c < substep_classes; ++c) {

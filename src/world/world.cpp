@@ -81,6 +81,9 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       narrow_scratch(&memory),
       records(&memory),
       found_separations(&memory),
+      extras(&memory),
+      deep_contacts(&memory),
+      eased(&memory),
       touching(&memory),
       touching_bodies(&memory),
       active(&memory),
@@ -89,6 +92,7 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       overlaps(&memory),
       active_joints(&memory),
       joint_records(&memory),
+      joint_axes(&memory),
       fixed_joints(&memory),
       joint_bodies(&memory),
       joint_groups(&memory),
@@ -256,7 +260,9 @@ uint64_t World::hash() const {
             uint64_t c = hash_combine(uint64_t{p.a} << 32 | p.b, r.key);
             c = hash_floats(c, r.normal_impulse, r.point_count);
             c = hash_floats(c, r.friction_impulse, 3);
-            contacts += hash_floats(c, &r.twist_impulse, 1);
+            c = hash_floats(c, &r.twist_impulse, 1);
+            if ((r.flags & contact_rolls) != 0) c = hash_floats(c, world.extras[i].impulse, 3);
+            contacts += c;
         }
     return hash_joints(world, hash_combine(h, contacts));
 }

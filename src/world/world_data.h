@@ -142,6 +142,10 @@ struct WorldData {
     // Manifolds, kept in place from step to step: each pair has its own stretch.
     Array<ContactRecord> records;
     Array<FoundSeparations> found_separations;  // by record
+    Array<ContactExtra> extras;                 // by record, where `has_extras`
+    bool has_extras = false;        // some material resists rolling or spinning or has tangential restitution
+    Array<uint16_t> deep_contacts;  // by solver body: room for limit_recovery()
+    Array<uint32_t> eased;          // records whose overlap is so deep that it may be undone more slowly than is set
     Array<uint32_t> touching;                   // records with points of listed pairs, in order
     Array<TouchingBodies> touching_bodies;      // ... and their bodies, within a step
     Array<uint32_t> active;  // those of them that are solved, by class of substeps: at least one body awake
@@ -153,6 +157,7 @@ struct WorldData {
     // Joints that are solved, kept while they and the awake bodies stay the same.
     Array<uint32_t> active_joints;  // slots, by class of substeps and then in creation order
     Array<JointRecord> joint_records;
+    Array<JointAxesRecord> joint_axes;            // of those of them whose rows are data
     Array<uint32_t> fixed_joints;                 // records with a side on a body that is not packed
     Array<uint32_t> joint_bodies;                 // the awake bodies that the records name, ...
     int joint_bodies_ends[substep_classes] = {};  // ... and where their classes end among the packed ones
@@ -205,6 +210,10 @@ void offer_first_load(WorldData& world, uint32_t record, const TouchingBodies& b
 void guess_first_loads(WorldData& world, float weight);
 void pack_bodies(WorldData& world, float dt);
 void pack_contacts(WorldData& world);
+// Bodies that many others push out of deep overlaps are pushed by each with a share; after pack_contacts().
+void limit_recovery(WorldData& world, float dt);
+// What the solver wants of contacts whose materials have more than friction and restitution; after pack_contacts().
+void pack_extras(WorldData& world, float dt);
 // Returns what the solver may keep of the last step.
 JointReuse pack_joints(WorldData& world, float h);
 void unpack_contacts(WorldData& world);
@@ -220,6 +229,8 @@ int substep_class(WorldData& world, uint32_t slot);
 uint64_t hash_joints(const WorldData& world, uint64_t start);
 // What a joint was last given, solved now or not.
 JointImpulses joint_impulses(const WorldData& world, uint32_t slot);
+// Of a joint whose rows are data: these, with the impulses that they were last given.
+JointAxesInfo joint_axes_impulses(const WorldData& world, uint32_t slot);
 // Without taking impulses from the records of joints.
 void forget_joint_records(WorldData& world);
 // Removes the joints of a body that is about to be removed.

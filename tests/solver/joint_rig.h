@@ -58,7 +58,8 @@ public:
         : tasks_(workers), solver_bodies_(nullptr), solver_(nullptr, width) {}
 
     std::vector<RigBody> bodies;
-    std::vector<JointRecord> joints;  // body_a and body_b are indices into `bodies`
+    std::vector<JointRecord> joints;    // body_a and body_b are indices into `bodies`
+    std::vector<JointAxesRecord> axes;  // of six-degree joints
     std::vector<ContactRecord> contacts;
     Vec3 gravity{0.0f, -9.81f, 0.0f};
     int substeps = 8;
@@ -79,7 +80,8 @@ public:
         for (size_t i = 0; i < list.size(); ++i) list[i] = static_cast<uint32_t>(i);
         int count = static_cast<int>(contacts.size());
         solver_.prepare(tasks_, solver_bodies_, contacts.data(), list.data(), count);
-        solver_.prepare_joints(tasks_, solver_bodies_, records_.data(), static_cast<int>(records_.size()),
+        solver_.prepare_joints(tasks_, solver_bodies_,
+                               {records_.data(), static_cast<int>(records_.size()), axes.data()},
                                {contacts.data(), list.data(), count, dt});
         solver_.solve(tasks_, settings, solver_bodies_, contacts.data());
         solver_.store(tasks_, contacts.data());

@@ -20,6 +20,7 @@ void dead_cube_of_balls(const Setting&, Figures&);
 void cradle(const Setting&, Figures&);
 void oblique_sliding(const Setting&, Figures&);
 void oblique_gripping(const Setting&, Figures&);
+void superball(const Setting&, Figures&);
 // friction.cpp, stick_slip.cpp
 void stick_slip_threshold(const Setting&, Figures&);
 void sliding_and_stopping(const Setting&, Figures&);
@@ -29,6 +30,8 @@ void isotropy(const Setting&, Figures&);
 void slide_to_roll(const Setting&, Figures&);
 void rolling_down(const Setting&, Figures&);
 void rolling_carrier(const Setting&, Figures&);
+// repose.cpp
+void angle_of_repose(const Setting&, Figures&);
 // statics.cpp, stacks.cpp, recovery.cpp, dominoes.cpp
 void tipping(const Setting&, Figures&);
 void dominoes(const Setting&, Figures&);

@@ -74,6 +74,37 @@ void oblique(const Setting& s, Figures& out, float friction, double tangential) 
         }
 }
 
+struct SuperballEnd {
+    Vec3d velocity, spin;
+    double energy;  // after / before
+};
+
+// A ball of radius 0.5 at (3, -5, 0) m/s and with `spin` that rolls it forward, off the floor, or off the floor, the
+// underside of a table at 2 m and the floor again.
+SuperballEnd throw_superball(const Setting& s, float tangential, float spin_rate, bool table) {
+    World world = s.world({});
+    StaticBodyDef wall{.shape = Box{{10.0f, 0.5f, 10.0f}},
+                       .position = {0.0f, -0.5f, 0.0f},
+                       .friction = 20.0f,
+                       .restitution = 1.0f,
+                       .tangential_restitution = tangential};
+    add_fixed(world, s.frame, wall);
+    wall.position = {0.0f, 2.5f, 0.0f};
+    if (table) add_fixed(world, s.frame, wall);
+    BodyId ball = add_body(world, s.frame,
+                           {.shape = Sphere{0.5f},
+                            .position = {-0.6f, 0.9f, 0.0f},
+                            .velocity = {3.0f, -5.0f, 0.0f},
+                            .angular_velocity = {0.0f, 0.0f, -spin_rate},
+                            .friction = 20.0f,
+                            .restitution = 1.0f,
+                            .tangential_restitution = tangential});
+    double before = totals(world, s.frame.origin).kinetic_energy;
+    advance(world, s.steps(table ? 0.55 : 0.2), s.dt());
+    return {velocity(world, s.frame, ball), spin(world, s.frame, ball),
+            totals(world, s.frame.origin).kinetic_energy / before};
+}
+
 }  // namespace
 
 // n in, n out: with gaps by momentum and energy alone, touching as in nature, where the impulse passes from ball to
@@ -94,6 +125,34 @@ void cradle(const Setting& s, Figures& out) {
             energy.add(end.energy, 1.0);
         }
     }
+}
+
+// A ball that turns its slip round: with u = v - R w the slip, v' = v - 2/7 (1 + e_t) u and R w' = R w + 5/7 (1 + e_t)
+// u (Garwin, American Journal of Physics 37, 1969). Then from floor to table to floor, which sends it back.
+void superball(const Setting& s, Figures& out) {
+    constexpr double speed = 3.0, radius = 0.5;
+    Quantity &along = out.quantity("tangential speed, m/s", within(3e-3)),
+             &turning = out.quantity("R times spin, m/s", within(3e-3)),
+             &energy = out.quantity("e_t = 1: energy after / before", within(1e-4)),
+             &back = out.quantity("floor, table, floor: tangential speed, m/s", within(3e-3)),
+             &kept = out.quantity("floor, table, floor: energy after / before", within(1e-4));
+    for (float share : {0.5f, 1.0f})
+        for (float before : {-10.0f, 0.0f, 10.0f}) {
+            SuperballEnd end = throw_superball(s, share, before, false);
+            double u = speed - radius * before, part = (1.0 + static_cast<double>(share)) * u;
+            along.add(end.velocity.x, speed - 2.0 / 7.0 * part);
+            turning.add(-radius * end.spin.z, radius * before + 5.0 / 7.0 * part);
+            if (share == 1.0f) energy.add(end.energy, 1.0);
+        }
+    double v = speed, rw = 0.0;
+    for (double side : {1.0, -1.0, 1.0}) {  // at the table the ball's top rubs
+        double u = v - side * rw;
+        v -= 4.0 / 7.0 * u;
+        rw += side * 10.0 / 7.0 * u;
+    }
+    SuperballEnd end = throw_superball(s, 1.0f, 0.0f, true);
+    back.add(end.velocity.x, v);
+    kept.add(end.energy, 1.0);
 }
 
 // The tangential impulse is mu times the normal one: dv_t = mu (1 + e) v_n.

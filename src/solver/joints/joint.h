@@ -5,7 +5,8 @@
 // Which rows a joint has is its class. Locked rows (three linear ones at the anchor, or two across a slider's axis, and
 // up to three angular ones) are solved together, directly; then bounded rows (a hinge's angle or slider's travel with
 // limit, motor and spring, or a ball joint's swing and twist) with the locked ones held. What a joint does not use has
-// no place in its row: a hinge is free, limited or driven, each a class of its own.
+// no place in its row: a hinge is free, limited or driven, each a class of its own. A six-degree joint, of which a
+// distance joint is a case, has all rows that there can be; which of them act is data, in a second record.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +21,10 @@ enum class JointClass : int32_t {
     driven_hinge,
     slider,
     driven_slider,
-    fixed
+    fixed,
+    six_degrees
 };
-inline constexpr int joint_classes = 8;
+inline constexpr int joint_classes = 9;
 
 inline constexpr float unlimited = 1e30f;  // bound of a coordinate that has none; large, but finite in sums
 
@@ -44,11 +46,35 @@ struct alignas(64) JointRecord {
     float stiffness, damping, target, spring_force;  // spring_force: largest, N or N m
     float linear[3], limit_0;   // impulses on B: locked linear rows; limit, or a ball joint's swing
     float angular[3], limit_1;  // locked angular rows; a ball joint's twist limit
-    float motor, spring, unused0, unused1;
+    float motor, spring;
+    int32_t axes;  // six_degrees: its JointAxesRecord
+    float unused1;
     float impulse[3], unused2;          // result: all of it on B in the last substep, world axes, N s ...
     float angular_impulse[3], unused3;  // ... and N m s, about the anchor
 };
 static_assert(sizeof(JointRecord) == 192);
+
+// One bounded coordinate of a six-degree joint, and its impulses in the last substep.
+struct JointAxisRecord {
+    float lower, upper;  // +-unlimited where there are none
+    // Where they are not 0, a bound gives way as a spring and damper instead of being hard; N/m or N m/rad.
+    float limit_stiffness, limit_damping;
+    float motor_velocity, motor_force;
+    float stiffness, damping, target, target_velocity, spring_force;
+    float limit, motor, spring;  // impulses on B
+};
+
+// Bounded rows of a six-degree joint: travel along x, y, z of the frame on A, turning about them, and a distance within
+// the plane or space of several axes, an angle about several.
+inline constexpr int joint_axes = 8;
+inline constexpr int distance_row = 6, swing_row = 7;
+struct JointAxesRecord {
+    JointAxisRecord axis[joint_axes];
+    float held_at[6];                   // coordinates of locked axes
+    uint8_t locked;                     // bits of the axes that are locked
+    uint8_t used;                       // bits of the rows that have anything to do
+    uint8_t distance_axes, swing_axes;  // bits of the axes that those two rows are about: two or three
+};
 
 // Nothing but joints constrains the two bodies' group: see passes.inl.
 inline constexpr uint16_t joint_split = 1;

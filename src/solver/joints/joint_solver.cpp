@@ -32,10 +32,11 @@ void JointSolver::for_each_group(TaskPool& tasks, Run&& run) const {
     }
 }
 
-void JointSolver::prepare(TaskPool& tasks, SolverBodies& bodies, JointRecord* records, int count, ContactList contacts,
+void JointSolver::prepare(TaskPool& tasks, SolverBodies& bodies, JointList joints, ContactList contacts,
                           JointReuse reuse) {
-    records_ = records;
-    bool fresh = schedule_.build(records, count, reuse.same, contacts, bodies, table_, scalar_);
+    records_ = joints.records;
+    bool fresh = schedule_.build(joints.records, joints.count, reuse.same, contacts, bodies, table_, scalar_);
+    for (JointGroup& g : schedule_.groups) g.axes = joints.axes;
     for_each_group(tasks, [&](const JointKernels& kernels, const JointGroup& g, int begin, int end) {
         if (fresh || !g.moved_a || !g.moved_b) kernels.load(g, records_, fresh, begin, end);
         kernels.prepare(g, bodies, reuse.scale, begin, end);

@@ -13,14 +13,20 @@ struct JointReuse {
     float scale = 1.0f;  // this substep over that of the last step: impulses are multiplied by it
 };
 
+// The joints of a step. Both must stay until store().
+struct JointList {
+    JointRecord* records;
+    int count;
+    JointAxesRecord* axes = nullptr;  // of six-degree joints, by JointRecord::axes
+};
+
 class JointSolver {
 public:
     JointSolver(const Memory* memory, int width)
         : schedule_(memory), table_(joint_table(width)), scalar_(joint_table(1)) {}
 
-    // Colours the joints and packs them into rows. `records` must stay until store().
-    void prepare(TaskPool& tasks, SolverBodies& bodies, JointRecord* records, int count, ContactList contacts,
-                 JointReuse reuse);
+    // Colours the joints and packs them into rows.
+    void prepare(TaskPool& tasks, SolverBodies& bodies, JointList joints, ContactList contacts, JointReuse reuse);
     bool empty() const { return schedule_.groups.empty(); }
     // In the first substep, after the contacts' warm start.
     void warm_start(TaskPool& tasks, SolverBodies& bodies) const;

@@ -30,6 +30,7 @@ struct JointGroup {
     const uint32_t* order;  // indices of the records
     std::byte* rows;        // what passes read
     std::byte* frames;      // what only the start of a step reads
+    JointAxesRecord* axes;  // that JointRecord::axes of six-degree joints names
 };
 
 // Joints of one class: blocks [begin, end) of a group.

@@ -1,6 +1,7 @@
 // The one source of all joint kernels; see solver/kernels.inl.
 #include <type_traits>
 
+#include "math/turned.h"
 #include "math/wide/gather.h"
 #include "math/wide/trigonometry.h"
 #include "math/wide/wide.h"
@@ -32,7 +33,8 @@ constexpr JointTable make_joint_table() {
             {make_kernels_of<W, JointClass::ball>(), make_kernels_of<W, JointClass::limited_ball>(),
              make_kernels_of<W, JointClass::hinge>(), make_kernels_of<W, JointClass::limited_hinge>(),
              make_kernels_of<W, JointClass::driven_hinge>(), make_kernels_of<W, JointClass::slider>(),
-             make_kernels_of<W, JointClass::driven_slider>(), make_kernels_of<W, JointClass::fixed>()}};
+             make_kernels_of<W, JointClass::driven_slider>(), make_kernels_of<W, JointClass::fixed>(),
+             make_kernels_of<W, JointClass::six_degrees>()}};
 }
 
 }  // namespace

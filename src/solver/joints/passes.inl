@@ -33,6 +33,10 @@ LENDULET_FORCE_INLINE void to_vectors(const JointGeometry<W, C>& o, const JointC
     using F = Wide<float, W>;
     using S = JointShape<C>;
     angular = zero_vector<F>();
+    if constexpr (S::six) {
+        six_vectors<W>(o, x.locked, x.bounded, linear, angular);
+        return;
+    }
     if constexpr (S::slider)
         linear = x.locked[0] * o.direction[0] + x.locked[1] * o.direction[1] + x.bounded[0] * o.direction[2];
     else linear = {x.locked[0], x.locked[1], x.locked[2]};
@@ -51,6 +55,8 @@ LENDULET_FORCE_INLINE JointChange<W, C> held_impulses(const JointRow<W, C>& c) {
     if constexpr (S::bounded > 0)
         for (int j = 0; j < S::bounded; ++j) x.bounded[j] = c.row[j].limit;
     if constexpr (S::driven) x.bounded[0] = x.bounded[0] + c.motor + c.spring_sum;
+    if constexpr (S::six)
+        for (int j = 0; j < S::bounded; ++j) x.bounded[j] = x.bounded[j] + (c.row[j].motor + c.row[j].spring_sum);
     return x;
 }
 
@@ -94,16 +100,20 @@ LENDULET_FORCE_INLINE void locked_speeds(const JointRow<W, C>& c, const JointGeo
     };
     Vec3T<F> sliding = p.sliding(o.ra, o.rb), turning = p.turning();
     if constexpr (biased) {
-        sliding = sliding + ahead(sliding_curvature(p, o.ra, o.rb, S::slider ? sliding : zero_vector<F>()));
+        sliding = sliding + ahead(sliding_curvature(p, o.ra, o.rb, S::along ? sliding : zero_vector<F>()));
         if constexpr (S::angular > 0) turning = turning + ahead(turning_curvature(p));
     }
     for (int i = 0; i < S::linear; ++i) {
         change[i] = zero - along_row<W, C>(o, i, sliding);
-        if constexpr (biased) change[i] = change[i] - push(along_row<W, C>(o, i, o.gap));
+        if constexpr (biased) {
+            F gap = along_row<W, C>(o, i, o.gap);
+            if constexpr (S::six) gap = gap - c.held_at[i];
+            change[i] = change[i] - push(gap);
+        }
     }
     if constexpr (S::angular > 0)
         for (int j = 0; j < S::angular; ++j) {
-            change[S::linear + j] = zero - dot(o.direction[j], turning);
+            change[S::linear + j] = zero - dot(o.direction[S::turning + j], turning);
             if constexpr (biased) change[S::linear + j] = change[S::linear + j] - push(o.error[j]);
         }
 }
@@ -244,6 +254,8 @@ LENDULET_FORCE_INLINE void solve_bounded(JointRow<W, C>& c, const JointGeometry<
     for (int j = 0; j < S::bounded; ++j) take(x.bounded[j], more.bounded[j]);
 }
 
+#include "solver/joints/six_passes.inl"
+
 // Multiplies what the row holds, as the bodies' repeated changes were.
 template <int W, JointClass C>
 LENDULET_FORCE_INLINE void scale_impulses(JointRow<W, C>& c, float by) {
@@ -254,9 +266,11 @@ LENDULET_FORCE_INLINE void scale_impulses(JointRow<W, C>& c, float by) {
     c.turn_a = s * c.turn_a;
     c.turn_b = s * c.turn_b;
     if constexpr (S::directions > 0) c.angular = s * c.angular;
-    if constexpr (S::slider) c.linear = s * c.linear;
+    if constexpr (S::along) c.linear = s * c.linear;
     if constexpr (S::bounded > 0)
         for (auto& row : c.row) row.limit = s * row.limit;
+    if constexpr (S::six)
+        for (auto& row : c.row) row.motor = s * row.motor, row.spring_sum = s * row.spring_sum;
     if constexpr (S::driven) c.motor = s * c.motor, c.spring_sum = s * c.spring_sum;
 }
 
@@ -267,7 +281,7 @@ LENDULET_FORCE_INLINE void rebase(JointRow<W, C>& c, const JointGeometry<W, C>& 
     using S = JointShape<C>;
     Vec3T<F> linear, angular;
     to_vectors<W, C>(o, held_impulses<W, C>(c), linear, angular);
-    if constexpr (S::slider) {
+    if constexpr (S::along) {
         Vec3T<F> more = linear - c.linear;
         p.A.v = p.A.v - p.A.inverse_mass * more;
         p.B.v = p.B.v + p.B.inverse_mass * more;
@@ -304,7 +318,7 @@ LENDULET_FORCE_INLINE void joint_pass(JointRow<W, C>& c, const JointGroup& g, So
     JointPair<F> pair = load_pair<W, C>(c, bodies);
     JointGeometry<W, C> o = find_geometry<W, C>(c, pair);
     PointResponse<F> response = point_response(o.ra, o.rb, pair.IA, pair.IB, pair.A.inverse_mass + pair.B.inverse_mass);
-    Factor<F, S::locked> mass = factor_locked<W, C>(o, response);
+    Factor<F, S::locked> mass = factor_locked<W, C>(c, o, response);
     if (g.split && k.scale != 1.0f) scale_impulses<W, C>(c, k.scale);
     if (biased || g.split) rebase<W, C>(c, o, pair);
     JointChange<W, C> x;
@@ -315,13 +329,14 @@ LENDULET_FORCE_INLINE void joint_pass(JointRow<W, C>& c, const JointGroup& g, So
     to_vectors<W, C>(o, x, linear, angular);
     pair.push(o.ra, o.rb, linear, angular);
     if constexpr (S::bounded > 0) {
-        solve_bounded<W, C, biased>(c, o, response, mass, pair, k, g.split, x);
+        if constexpr (S::six) solve_axes<W, biased>(c, o, response, mass, pair, k, g.split, x);
+        else solve_bounded<W, C, biased>(c, o, response, mass, pair, k, g.split, x);
         to_vectors<W, C>(o, x, linear, angular);
     }
     c.turn_a = c.turn_a + (cross(o.ra, linear) + angular);
     c.turn_b = c.turn_b + (cross(o.rb, linear) + angular);
     if constexpr (S::directions > 0) c.angular = c.angular + angular;
-    if constexpr (S::slider) c.linear = c.linear + linear;
+    if constexpr (S::along) c.linear = c.linear + linear;
     if (g.moved_a) store_velocity_at<W>(bodies.state.data(), c.a, pair.A);
     if (g.moved_b) store_velocity_at<W>(bodies.state.data(), c.b, pair.B);
 }
@@ -341,7 +356,7 @@ void warm_start_joints(const JointGroup& g, SolverBodies& bodies, const JointCon
         WideVelocity<F> A = load_velocity_at<W>(bodies.state.data(), c.a),
                         B = load_velocity_at<W>(bodies.state.data(), c.b);
         Vec3T<F> linear;
-        if constexpr (JointShape<C>::slider) linear = c.linear;
+        if constexpr (JointShape<C>::along) linear = c.linear;
         else linear = {c.impulse[0], c.impulse[1], c.impulse[2]};
         A.v = A.v - A.inverse_mass * linear;
         B.v = B.v + B.inverse_mass * linear;

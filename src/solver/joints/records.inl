@@ -26,10 +26,12 @@ enum JointQuad {
     joint_angular_impulse
 };
 
+#include "solver/joints/six_records.inl"
+
 // Impulses of the last step. Those of a split joint stand for half a substep.
 template <int W, JointClass C>
-LENDULET_FORCE_INLINE void load_impulses(JointRow<W, C>& c, const JointRecord* records, const int32_t* index,
-                                         const int32_t (&live)[W]) {
+LENDULET_FORCE_INLINE void load_impulses(JointRow<W, C>& c, [[maybe_unused]] const JointGroup& g,
+                                         const JointRecord* records, const int32_t* index, const int32_t (&live)[W]) {
     using F = Wide<float, W>;
     using S = JointShape<C>;
     F scale = splat<F>(0.0f);  // empty lanes carry nothing
@@ -40,7 +42,8 @@ LENDULET_FORCE_INLINE void load_impulses(JointRow<W, C>& c, const JointRecord* r
     }
     JointQuads<W> linear(records, index, joint_linear), angular(records, index, joint_angular);
     for (int i = 0; i < S::locked; ++i) c.impulse[i] = scale * (i < S::linear ? linear.q[i] : angular.q[i - S::linear]);
-    if constexpr (S::bounded > 0)
+    if constexpr (S::six) load_six_impulses<W>(c, g, records, index, scale);
+    else if constexpr (S::bounded > 0)
         for (int j = 0; j < S::bounded; ++j) c.row[j].limit = scale * (j == 0 ? linear.q[3] : angular.q[3]);
     if constexpr (S::driven) {
         JointQuads<W> drive(records, index, joint_drive);
@@ -74,7 +77,8 @@ LENDULET_FORCE_INLINE void load_joint(JointRow<W, C>& c, JointFrames<W, C>& fram
         frames.frame_a = JointQuads<W>(records, index, joint_frame_a).quat();
         frames.frame_b = JointQuads<W>(records, index, joint_frame_b).quat();
     }
-    if constexpr (S::bounded > 0) {
+    if constexpr (S::six) load_six_rows<W>(c, g, records, index, live);
+    else if constexpr (S::bounded > 0) {
         c.row[S::bounded - 1].lower = bounds.q[2];
         c.row[S::bounded - 1].upper = bounds.q[3];
         if constexpr (S::limited_ball) c.row[0].lower = splat<F>(-unlimited), c.row[0].upper = arm_a.q[3];
@@ -85,7 +89,7 @@ LENDULET_FORCE_INLINE void load_joint(JointRow<W, C>& c, JointFrames<W, C>& fram
         c.motor_force = bounds.q[0];
         c.stiffness = spring.q[0], c.damping = spring.q[1], c.target = spring.q[2], c.spring_force = spring.q[3];
     }
-    if (with_impulses) load_impulses<W, C>(c, records, index, live);
+    if (with_impulses) load_impulses<W, C>(c, g, records, index, live);
 }
 
 template <int W, JointClass C>
@@ -144,14 +148,18 @@ LENDULET_FORCE_INLINE void prepare_joint(JointRow<W, C>& c, const JointFrames<W,
         c.frame_b = multiply(B.q, frames.frame_b);
     }
     if constexpr (S::driven) c.spring = splat<F>(scale) * c.spring, c.spring_sum = c.spring;
+    if constexpr (S::six)
+        for (auto& row : c.row) row.spring = splat<F>(scale) * row.spring, row.spring_sum = row.spring;
     c.turn_a = c.turn_b = zero_vector<F>();
     if constexpr (S::directions > 0) c.angular = zero_vector<F>();
-    if constexpr (S::slider) c.linear = zero_vector<F>();
+    if constexpr (S::along) c.linear = zero_vector<F>();
     if (scale != 1.0f) {
         for (F& x : c.impulse) x = splat<F>(scale) * x;
         if constexpr (S::bounded > 0)
             for (auto& row : c.row) row.limit = splat<F>(scale) * row.limit;
         if constexpr (S::driven) c.motor = splat<F>(scale) * c.motor;
+        if constexpr (S::six)
+            for (auto& row : c.row) row.motor = splat<F>(scale) * row.motor;
     }
     F a[4], b[4];
     gather4<W>(floats_of(bodies.state.data()), c.a, sizeof(BodyState) / 32, 0, a);
@@ -166,7 +174,7 @@ LENDULET_FORCE_INLINE void prepare_joint(JointRow<W, C>& c, const JointFrames<W,
     c.turn_a = cross(o.ra, linear) + angular;
     c.turn_b = cross(o.rb, linear) + angular;
     if constexpr (S::directions > 0) c.angular = angular;
-    if constexpr (S::slider) c.linear = linear;
+    if constexpr (S::along) c.linear = linear;
 }
 
 template <int W, JointClass C>
@@ -205,11 +213,15 @@ void store_joints(const JointGroup& g, JointRecord* records, int begin, int end)
         const JointRow<W, C>& c = rows[b];
         F quads[5][4]{};
         for (int i = 0; i < S::locked; ++i) (i < S::linear ? quads[0][i] : quads[1][i - S::linear]) = c.impulse[i];
-        if constexpr (S::bounded > 0) quads[0][3] = c.row[0].limit;
-        if constexpr (S::bounded > 1) quads[1][3] = c.row[1].limit;
+        if constexpr (S::six) {
+            store_six<W>(c, g, records, b * W);
+        } else {
+            if constexpr (S::bounded > 0) quads[0][3] = c.row[0].limit;
+            if constexpr (S::bounded > 1) quads[1][3] = c.row[1].limit;
+        }
         if constexpr (S::driven) quads[2][0] = c.motor, quads[2][1] = c.spring;
         Vec3T<F> linear, angular = zero_vector<F>();
-        if constexpr (S::slider) linear = c.linear;
+        if constexpr (S::along) linear = c.linear;
         else linear = {c.impulse[0], c.impulse[1], c.impulse[2]};
         if constexpr (S::directions > 0) angular = c.angular;
         linear = whole * linear, angular = whole * angular;

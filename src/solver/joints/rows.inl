@@ -11,14 +11,21 @@ struct JointShape {
     static constexpr bool hinge =
         C == JointClass::hinge || C == JointClass::limited_hinge || C == JointClass::driven_hinge;
     static constexpr bool limited_ball = C == JointClass::limited_ball;
-    static constexpr int linear = slider ? 2 : 3;  // locked rows
-    static constexpr int angular = hinge ? 2 : slider || C == JointClass::fixed ? 3 : 0;
+    static constexpr bool six = C == JointClass::six_degrees;  // which rows act is data, see six_degrees.inl
+    static constexpr bool along = slider || six;               // linear rows along the joint frame's axes on A
+    static constexpr int linear = slider ? 2 : 3;              // locked rows
+    static constexpr int angular = hinge ? 2 : slider || six || C == JointClass::fixed ? 3 : 0;
     static constexpr int locked = linear + angular;
-    static constexpr int bounded = limited_ball ? 2 : slider || (hinge && C != JointClass::hinge) ? 1 : 0;
+    static constexpr int bounded = six                                           ? joint_axes
+                                   : limited_ball                                ? 2
+                                   : slider || (hinge && C != JointClass::hinge) ? 1
+                                                                                 : 0;
     // Its one bounded row has motor and spring besides the limit.
     static constexpr bool driven = C == JointClass::driven_hinge || C == JointClass::driven_slider;
-    // Directions: the joint frame's y, z and x on A, or a ball joint's axes of swing and twist.
-    static constexpr int directions = linear + angular == 3 ? bounded : 3;
+    // Directions: the joint frame's y, z and x on A, or a ball joint's axes of swing and twist; a six-degree joint's
+    // are those of its bounded rows, which its locked rows share.
+    static constexpr int directions = six ? joint_axes : linear + angular == 3 ? bounded : 3;
+    static constexpr int turning = six ? 3 : 0;  // the direction of the first angular row
 };
 
 template <int>
@@ -53,11 +60,30 @@ struct JointDrive {
     F spring_sum;  // and of all that is in the bodies' velocities
 };
 
+// Rows of a six-degree joint. Flags are 1 or 0.
+template <int W>
+struct JointSix {
+    using F = Wide<float, W>;
+    F locked[6];
+    F held_at[3], cosine[3], sine[3];  // where: travel, and half the angle
+    F distance_axes[3], swing_axes[3];
+    struct Row {
+        F used;
+        F lower, upper, limit_stiffness, limit_damping;
+        F motor_velocity, motor_force;
+        F stiffness, damping, target, target_velocity, spring_force;
+        F limit, motor, spring, spring_sum;  // impulses, as in JointDrive; `spring` with that of a soft bound
+    } row[joint_axes];
+    uint32_t used;  // bits of the rows that any lane uses
+};
+
 template <int W, JointClass C>
 struct alignas(64) JointRow
     : std::conditional_t<(JointShape<C>::directions > 0), JointAxes<W>, NoPart<0>>,
-      std::conditional_t<JointShape<C>::slider, JointTravel<W>, NoPart<1>>,
-      std::conditional_t<(JointShape<C>::bounded > 0), JointBounds<W, JointShape<C>::bounded>, NoPart<2>>,
+      std::conditional_t<JointShape<C>::along, JointTravel<W>, NoPart<1>>,
+      std::conditional_t<
+          JointShape<C>::six, JointSix<W>,
+          std::conditional_t<(JointShape<C>::bounded > 0), JointBounds<W, JointShape<C>::bounded>, NoPart<2>>>,
       std::conditional_t<JointShape<C>::driven, JointDrive<W>, NoPart<3>> {
     using F = Wide<float, W>;
     int32_t a[W], b[W];                    // eight times the body's index, as in contact rows
@@ -99,6 +125,8 @@ template <class F>
 LENDULET_FORCE_INLINE Vec3T<F> turned_by(QuatT<F> dq, Vec3T<F> r) {
     return turned_back(conjugate(dq), r);
 }
+
+#include "solver/joints/six_degrees.inl"
 
 // Axes and errors from the joint frames on both bodies. With q the rotation from frame A to frame B: its vector part is
 // half the error of a fixed joint; B's x axis crossed into A's is that of a hinge; the turn of B about A's x axis, or
@@ -144,10 +172,10 @@ LENDULET_FORCE_INLINE void find_axes(JointGeometry<W, C>& o, const JointRow<W, C
     }
 }
 
-// Linear row i: along world axes, or along the directions of a slider.
+// Linear row i: along world axes, or along the directions of a slider or six-degree joint.
 template <int W, JointClass C>
 LENDULET_FORCE_INLINE Wide<float, W> along_row(const JointGeometry<W, C>& o, int i, Vec3T<Wide<float, W>> v) {
-    if constexpr (JointShape<C>::slider) return dot(o.direction[i], v);
+    if constexpr (JointShape<C>::along) return dot(o.direction[i], v);
     else return component_of(v, i);
 }
 
@@ -160,8 +188,13 @@ LENDULET_FORCE_INLINE JointGeometry<W, C> find_geometry(const JointRow<W, C>& c,
     o.gap = c.gap0 + ((p.dpb - p.dpa) + (tb - ta));
     o.ra = c.ra0 + ta;
     o.rb = c.rb0 + tb;
-    if constexpr (S::directions > 0) find_axes<W, C>(o, c, p.dqa, p.dqb);
+    if constexpr (S::six) find_six_axes<W>(o, c, p.dqa, p.dqb);
+    else if constexpr (S::directions > 0) find_axes<W, C>(o, c, p.dqa, p.dqb);
     Vec3T<F> error = o.gap;
+    if constexpr (S::six) {
+        error = locked_gap<W>(o, c);
+        o.ra = o.ra + (o.gap - error);
+    }
     if constexpr (S::slider) {
         o.coordinate[0] = dot(o.direction[2], o.gap);
         error = o.gap - o.coordinate[0] * o.direction[2];
@@ -181,13 +214,13 @@ LENDULET_FORCE_INLINE JointGeometry<W, C> find_geometry(const JointRow<W, C>& c,
 
 template <int W, JointClass C>
 LENDULET_FORCE_INLINE Factor<Wide<float, W>, JointShape<C>::locked> factor_locked(
-    const JointGeometry<W, C>& o, const PointResponse<Wide<float, W>>& p) {
+    [[maybe_unused]] const JointRow<W, C>& c, const JointGeometry<W, C>& o, const PointResponse<Wide<float, W>>& p) {
     using F = Wide<float, W>;
     using S = JointShape<C>;
     F k[S::locked][S::locked];
     for (int i = 0; i < S::linear; ++i) {
         Vec3T<F> column;
-        if constexpr (S::slider) column = p.linear * o.direction[i];
+        if constexpr (S::along) column = p.linear * o.direction[i];
         else
             column = i == 0   ? Vec3T<F>{p.linear.xx, p.linear.xy, p.linear.xz}
                      : i == 1 ? Vec3T<F>{p.linear.xy, p.linear.yy, p.linear.yz}
@@ -196,10 +229,13 @@ LENDULET_FORCE_INLINE Factor<Wide<float, W>, JointShape<C>::locked> factor_locke
     }
     if constexpr (S::angular > 0)
         for (int j = 0; j < S::angular; ++j) {
-            Vec3T<F> slide = p.coupled(o.direction[j]), turn = p.angular * o.direction[j];
+            Vec3T<F> d = o.direction[S::turning + j], slide = p.coupled(d), turn = p.angular * d;
             for (int i = 0; i < S::linear; ++i) k[S::linear + j][i] = along_row<W, C>(o, i, slide);
-            for (int i = 0; i <= j; ++i) k[S::linear + j][S::linear + i] = dot(o.direction[i], turn);
+            for (int i = 0; i <= j; ++i) k[S::linear + j][S::linear + i] = dot(o.direction[S::turning + i], turn);
         }
+    if constexpr (S::six)  // rows that are not locked get no impulse
+        for (int j = 0; j < S::locked; ++j)
+            for (int i = 0; i <= j; ++i) k[j][i] = (c.locked[i] * c.locked[j]) * k[j][i];
     Factor<F, S::locked> mass;
     mass.set(k);
     return mass;

@@ -114,6 +114,7 @@ JointGroup JointSchedule::group_of(int type, int side_kind, bool split, int coun
     g.filler = filler(type);
     g.count = count;
     g.order = which;
+    g.axes = nullptr;
     size_t blocks = block_count(static_cast<uint32_t>(count), table.width);
     g.rows = reinterpret_cast<std::byte*>(bytes);  // offsets until the block is allocated
     bytes += table.of[type].row_bytes * blocks;

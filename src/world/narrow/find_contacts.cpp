@@ -327,7 +327,8 @@ void find_contacts(WorldData& world, float dt) {
     world.records.resize_unset(world.pairs.record_count());
     world.found_separations.resize_unset(world.records.size());
     world.resting.place.resize_unset(world.records.size());
-    for (Array<uint32_t>* list : {&world.touching, &world.active, &world.unsorted, &world.resting.records})
+    for (Array<uint32_t>* list :
+         {&world.touching, &world.active, &world.unsorted, &world.eased, &world.resting.records})
         list->reserve(world.records.capacity());
     for (Array<TouchingBodies>* list : {&world.touching_bodies, &world.active_bodies})
         list->reserve(world.records.capacity());

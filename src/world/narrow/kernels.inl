@@ -3,6 +3,7 @@
 // of a wider machine.
 #include <type_traits>
 
+#include "math/turned.h"
 #include "math/wide/gather.h"
 #include "math/wide/wide.h"
 #include "world/narrow/kernels.h"

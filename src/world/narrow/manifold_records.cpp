@@ -2,7 +2,6 @@
 
 #include <cstring>
 
-#include "geometry/triangle_surface.h"
 
 namespace lendulet {
 namespace {
@@ -48,11 +47,7 @@ void prepare_record(const WorldData& world, const ColliderPair& p, ContactRecord
 void set_surface(const WorldData& world, const ColliderPair& p, ContactRecord& r) {
     const ColliderStore& c = world.colliders;
     if (r.triangle < 0 || (c.materials[p.a].empty() && c.materials[p.b].empty())) return;
-    auto surface = [&](uint32_t collider) {
-        if (c.materials[collider].empty()) return c.surface[collider];
-        return c.materials[collider][TriangleSurface(c.geometry[collider]).material(static_cast<uint32_t>(r.triangle))];
-    };
-    write_surface(combine(surface(p.a), surface(p.b)), r);
+    write_surface(combine(c.surface_at(p.a, r.triangle), c.surface_at(p.b, r.triangle)), r);
 }
 
 void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const Manifold& m) {

@@ -1,13 +1,5 @@
 // Pairs that have barely moved keep their manifolds. Part of kernels.inl; the bounds are derived in docs/collision.md.
 
-// R(dq)^T n - n, without the cancellation of computing the rotated vector first.
-template <class F>
-LENDULET_FORCE_INLINE Vec3T<F> turned_back(QuatT<F> dq, Vec3T<F> n) {
-    Vec3T<F> u{-dq.x, -dq.y, -dq.z};
-    Vec3T<F> c = cross(u, cross(u, n) + dq.w * n);
-    return c + c;
-}
-
 // How a pair has moved since its pose was kept.
 template <class F>
 struct WideMotion {

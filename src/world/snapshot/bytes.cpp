@@ -119,6 +119,10 @@ void joint(Bytes& bytes, SavedJoint& j) {
     bytes(j.motor.target_velocity, j.motor.max_force);
     bytes(i.linear, i.angular, i.limit, i.motor, i.spring, i.flags);
     bytes(i.impulse, i.angular_impulse, i.h);
+    flags(bytes, j.has_axes);
+    if (!j.has_axes) return;
+    for (JointAxis& axis : j.axes.row) bytes(axis.motor.target_velocity, axis.motor.max_force);
+    bytes(j.axes.limit, j.axes.motor, j.axes.spring);
 }
 
 template <class Bytes>
@@ -146,6 +150,8 @@ void contact(Bytes& bytes, SavedContact& c) {
     r.point_count = points;
     bytes(r.normal, r.friction_impulse, r.twist_impulse, r.radius_a, r.radius_b, r.follow, r.arm_offset, r.key,
           r.triangle);
+    flags(bytes, c.rolls, c.fresh);
+    if (c.rolls) bytes(c.extra.impulse, c.extra.h);
     for (int j = 0; j < 4; ++j) {
         if (j < points) {
             bytes(r.points[j], r.normal_impulse[j], r.id[j], c.found.s[j]);

@@ -24,6 +24,12 @@ uint64_t mix_settings(uint64_t h, const WorldConfig& c) {
     return h;
 }
 
+uint64_t mix_surface(uint64_t h, const Surface& s) {
+    const float values[6] = {s.static_friction,  s.dynamic_friction,  s.restitution,
+                             s.rolling_friction, s.spinning_friction, s.tangential_restitution};
+    return hash_floats(h, values, 6);
+}
+
 uint64_t mix_body(uint64_t h, const WorldData& world, uint32_t slot) {
     const BodyInfo& info = world.bodies.info[slot];
     const BodyMass& mass = world.bodies.mass[slot];
@@ -36,16 +42,12 @@ uint64_t mix_body(uint64_t h, const WorldData& world, uint32_t slot) {
         h = mix(h, Transform{from_origin(world.bodies.pose[slot].position), world.bodies.pose[slot].orientation});
     for (uint32_t c = info.first_collider; c != no_slot; c = world.colliders.info[c].next) {
         const ColliderInfo& collider = world.colliders.info[c];
-        const Surface& surface = world.colliders.surface[c];
-        float values[4] = {collider.radius, surface.static_friction, surface.dynamic_friction, surface.restitution};
         h = hash_combine(h, c);
         h = hash_combine(h, static_cast<uint64_t>(world.colliders.geometry[c].kind));
-        h = mix(hash_floats(h, values, 4), world.colliders.local[c]);
+        h = hash_floats(h, &collider.radius, 1);
+        h = mix(mix_surface(h, world.colliders.surface[c]), world.colliders.local[c]);
         h = mix(h, world.colliders.geometry[c].size);
-        for (const Surface& s : world.colliders.materials[c]) {
-            float of_table[3] = {s.static_friction, s.dynamic_friction, s.restitution};
-            h = hash_floats(h, of_table, 3);
-        }
+        for (const Surface& s : world.colliders.materials[c]) h = mix_surface(h, s);
     }
     return h;
 }
@@ -55,6 +57,7 @@ uint64_t mix_joint(uint64_t h, const WorldData& world, uint32_t slot) {
     for (uint64_t word : {uint64_t{slot}, uint64_t{world.joints.slots.uses(slot)}, static_cast<uint64_t>(joint.type),
                           uint64_t{joint.body_a}, uint64_t{joint.body_b}})
         h = hash_combine(h, word);
+    h = hash_combine(h, static_cast<uint64_t>(joint.axes >= 0));
     return mix(mix(h, joint.frame_a), joint.frame_b);
 }
 
@@ -96,8 +99,12 @@ void capture_pair(const WorldData& world, uint32_t number, SavedState& state) {
     s.pose = world.pairs.poses[number];
     s.kept = s.pose.clearance != unkept;
     state.pairs.push_back(s);
-    for (uint32_t i = p.first_record; i < p.first_record + p.count; ++i)
-        state.contacts.push_back({world.records[i], world.found_separations[i]});
+    for (uint32_t i = p.first_record; i < p.first_record + p.count; ++i) {
+        SavedContact c{world.records[i], world.found_separations[i]};
+        c.rolls = (c.record.flags & contact_rolls) != 0;
+        if (c.rolls) c.extra = world.extras[i], c.fresh = c.extra.step == static_cast<uint32_t>(world.steps);
+        state.contacts.push_back(c);
+    }
 }
 
 // In the order of colliders, whether listed or not.
@@ -131,8 +138,11 @@ void capture(const WorldData& world, SavedState& state) {
     state.time = world.time;
     state.steps = world.steps;
     for (uint32_t slot : world.bodies.slots.order()) state.bodies.push_back(capture_body(world, slot));
-    for (uint32_t slot : world.joints.slots.order())
-        state.joints.push_back({world.joints.info[slot].motor, joint_impulses(world, slot)});
+    for (uint32_t slot : world.joints.slots.order()) {
+        const bool has_axes = world.joints.info[slot].axes >= 0;
+        state.joints.push_back({world.joints.info[slot].motor, joint_impulses(world, slot), has_axes,
+                                has_axes ? joint_axes_impulses(world, slot) : JointAxesInfo{}});
+    }
     state.boxes.append(world.moving_boxes.data(), world.moving_boxes.size());
     capture_pairs(world, state);
 }

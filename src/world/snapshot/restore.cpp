@@ -40,7 +40,9 @@ bool good_contact(const SavedContact& c) {
     if (r.point_count < 1 || r.point_count > 4 || !is_unit(r.normal, 3)) return false;
     for (int j = 0; j < 4; ++j)
         if (!(r.normal_impulse[j] >= 0.0f) || !is_finite(r.normal_impulse[j])) return false;
-    return true;
+    for (float x : c.extra.impulse)
+        if (!is_finite(x)) return false;
+    return is_finite(c.extra.h) && c.extra.h >= 0.0f;
 }
 
 // Of each collider of the world, by slot: the body among the snapshot's that it belongs to; null: it knows none.
@@ -62,6 +64,15 @@ Status check_bodies(const WorldData& world, const SavedState& state) {
         if (b.fixed != (type == BodyType::fixed)) return bad("takes a static body for a moving one");
         bool good = b.fixed ? !b.mover : good_body(b) && (b.mover || b.asleep || type == BodyType::kinematic);
         if (!good) return bad("holds a body whose state cannot be");
+    }
+    return {};
+}
+
+// Joints whose rows are data have motors and impulses for each.
+Status check_joints(const WorldData& world, const SavedState& state) {
+    for (uint32_t i = 0; i < state.joint_slots.count; ++i) {
+        const JointInfo& j = world.joints.info[world.joints.slots.in_order(static_cast<int>(i))];
+        if (state.joints[i].has_axes != (j.axes >= 0)) return bad("holds a joint that cannot be");
     }
     return {};
 }
@@ -172,7 +183,25 @@ void apply_joints(WorldData& world, const SavedState& state) {
         const SavedJoint& joint = state.joints[next++];
         world.joints.info[slot].motor = joint.motor;
         world.joints.impulses[slot] = joint.impulses;
+        if (world.joints.info[slot].axes < 0) continue;
+        JointAxesInfo& axes = world.joints.axes[static_cast<size_t>(world.joints.info[slot].axes)];
+        for (int i = 0; i < joint_coordinates; ++i) {
+            axes.row[i].motor = joint.axes.row[i].motor;
+            axes.limit[i] = joint.axes.limit[i];
+            axes.motor[i] = joint.axes.motor[i];
+            axes.spring[i] = joint.axes.spring[i];
+        }
     }
+}
+
+void restore_extra(WorldData& world, uint32_t record, const SavedContact& saved) {
+    world.extras.resize(world.records.size(), ContactExtra{});
+    ContactExtra& e = world.extras[record];
+    ContactRecord& r = world.records[record];
+    e = saved.extra;
+    e.pair = r.pair, e.key = r.key;
+    e.step = static_cast<uint32_t>(world.steps) - (saved.fresh ? 0u : 1u);
+    r.flags |= contact_rolls;
 }
 
 void apply_pair(WorldData& world, const SavedPair& saved, const SavedContact* contacts) {
@@ -191,6 +220,7 @@ void apply_pair(WorldData& world, const SavedPair& saved, const SavedContact* co
         set_surface(world, p, r);
         r.pair = number;
         world.found_separations[p.first_record + k] = contacts[k].found;
+        if (contacts[k].rolls) restore_extra(world, p.first_record + k, contacts[k]);
     }
 }
 
@@ -234,6 +264,7 @@ Status check_saved(const WorldData& world, const SavedState& state) {
         !(state.time >= 0.0 && state.time < 1e300))
         return bad("holds a time or a gravity that cannot be");
     if (Status s = check_bodies(world, state); !s) return s;
+    if (Status s = check_joints(world, state); !s) return s;
     if (Status s = check_boxes(world, state); !s) return s;
     return check_pairs(world, state);
 }

@@ -34,11 +34,15 @@ struct SavedBody {
 struct SavedJoint {
     Motor motor;
     JointImpulses impulses;
+    bool has_axes = false;
+    JointAxesInfo axes{};  // of joints whose rows are data: their motors and impulses
 };
 
 struct SavedContact {
     ContactRecord record;
     FoundSeparations found;
+    bool rolls = false, fresh = false;  // `extra` holds its impulse, and that is of the last step
+    ContactExtra extra{};
 };
 
 struct SavedPair {

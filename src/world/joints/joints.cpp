@@ -1,0 +1,136 @@
+// Joints through the public interface: adding, setting and removing.
+#include "world/joints/checks.h"
+#include "world/joints/records.h"
+#include "world/validate.h"
+
+namespace lendulet {
+namespace {
+
+constexpr size_t max_name = 255;
+
+void motor_was_set(WorldData& world, const JointInfo& j) {
+    world.joints_changed = true;
+    wake_body(world, j.body_a);
+    wake_body(world, j.body_b);
+}
+
+// Joints may keep the colliders of their bodies apart.
+void joints_changed(WorldData& world, const JointInfo& j) {
+    world.movers.joints_changed = world.joints_changed = world.joint_groups_changed = true;
+    if (!j.collide_connected) world.rejoined.push_back({j.body_a, j.body_b});
+}
+
+void remove_joint_at(WorldData& world, uint32_t slot) {
+    const JointInfo& j = world.joints.info[slot];
+    wake_body(world, j.body_a);
+    wake_body(world, j.body_b);
+    drop_joint_records(world);
+    joints_changed(world, j);
+    world.joints.remove(slot);
+}
+
+}  // namespace
+
+Result<JointId> World::add_joint(const JointDef& def) {
+    constexpr const char* call = "add_joint";
+    WorldData& world = *data_;
+    if (Status s = check_bodies(world, def.body_a, def.body_b, call); !s) return s.error();
+    Result<Transform> a = check_frame(def.frame_a, "frame A", call), b = check_frame(def.frame_b, "frame B", call);
+    if (!a) return a.error();
+    if (!b) return b.error();
+    if (Status s = check_rows(def, call); !s) return s.error();
+
+    JointInfo j;
+    j.type = def.type;
+    j.collide_connected = def.collide_connected;
+    j.body_a = def.body_a.index;
+    j.body_b = def.body_b.index;
+    j.frame_a = inverse(world.bodies.principal[j.body_a]) * a.value();
+    j.frame_b = inverse(world.bodies.principal[j.body_b]) * b.value();
+    j.limit = def.limit;
+    j.motor = def.motor;
+    j.spring = def.spring;
+    j.swing_limit = def.swing_limit;
+    j.twist_limit = def.twist_limit;
+    j.user_data = def.user_data;
+    const bool has_rows = rows_are_data(j);
+    const JointAxesInfo rows = has_rows ? rows_of(def) : JointAxesInfo{};
+    wake_body(world, j.body_a);
+    wake_body(world, j.body_b);
+    joints_changed(world, j);
+    return world.joints.id(world.joints.add(j, has_rows ? &rows : nullptr, def.name.substr(0, max_name)));
+}
+
+Status World::remove_joint(JointId id) {
+    if (!data_->joints.alive(id)) return no_such(data_->joints.slots, id.generation, "remove_joint", "joint");
+    remove_joint_at(*data_, id.index);
+    return {};
+}
+
+Status World::set_motor(JointId id, Motor motor) {
+    constexpr const char* call = "set_motor";
+    WorldData& world = *data_;
+    if (!world.joints.alive(id)) return no_such(world.joints.slots, id.generation, call, "joint");
+    JointInfo& j = world.joints.info[id.index];
+    if (j.type != JointType::hinge && j.type != JointType::slider && j.type != JointType::distance)
+        return refused_joint(ErrorCode::bad_joint, call, "only hinges, sliders and distance joints have a motor");
+    if (Status s = check_motor(motor, call); !s) return s;
+    j.motor = motor;
+    if (j.axes >= 0) world.joints.axes[static_cast<size_t>(j.axes)].row[driven_row(j.type)].motor = motor;
+    motor_was_set(world, j);
+    return {};
+}
+
+Status World::set_motor(JointId id, Coordinate coordinate, Motor motor) {
+    constexpr const char* call = "set_motor";
+    WorldData& world = *data_;
+    if (!world.joints.alive(id)) return no_such(world.joints.slots, id.generation, call, "joint");
+    const JointInfo& j = world.joints.info[id.index];
+    const int row = static_cast<int>(coordinate);
+    if (j.type != JointType::six_degrees || row < 0 || row >= joint_coordinates)
+        return refused_joint(ErrorCode::bad_joint, call, "only six-degree joints have motors by coordinate");
+    JointAxesInfo& axes = world.joints.axes[static_cast<size_t>(j.axes)];
+    if ((coordinate == Coordinate::distance && axes.distance_axes == 0) ||
+        (coordinate == Coordinate::swing && axes.swing_axes == 0))
+        return refused_joint(ErrorCode::bad_joint, call, "the joint does not use that coordinate");
+    if (Status s = check_motor(motor, call); !s) return s;
+    axes.row[row].motor = motor;
+    motor_was_set(world, j);
+    return {};
+}
+
+Result<JointDef> World::joint_at(JointType type, BodyId a, BodyId b, Position anchor, Vec3 axis) const {
+    constexpr const char* call = "joint_at";
+    const WorldData& world = *data_;
+    if (Status s = check_bodies(world, a, b, call); !s) return s.error();
+    if (Status s = valid_position(anchor, call); !s) return s.error();
+    if (!is_finite(axis)) return refused_joint(ErrorCode::non_finite, call, "the axis must be finite");
+    if (!(max_component(absolute(axis)) > 1e-30f))
+        return refused_joint(ErrorCode::bad_joint, call, "the axis has no length");
+    Quat frame = rotation_between({1.0f, 0.0f, 0.0f}, normalize(axis));
+    auto on = [&](BodyId id) {
+        Pose pose = world.bodies.user_pose(id.index);
+        return Transform{to_local(pose, anchor), conjugate(pose.orientation) * frame};
+    };
+    JointDef def;
+    def.type = type;
+    def.body_a = a;
+    def.body_b = b;
+    def.frame_a = on(a);
+    def.frame_b = on(b);
+    return def;
+}
+
+bool World::alive(JointId id) const { return data_->joints.alive(id); }
+int World::joint_count() const { return data_->joints.count(); }
+JointId World::joint_id(int index) const {
+    if (index < 0 || index >= joint_count()) return {};
+    return data_->joints.id(data_->joints.slots.in_order(index));
+}
+
+void remove_joints_of(WorldData& world, uint32_t body) {
+    for (uint32_t slot = world.joints.first_of(body); slot != no_joint_link; slot = world.joints.first_of(body))
+        remove_joint_at(world, slot);
+}
+
+}  // namespace lendulet
