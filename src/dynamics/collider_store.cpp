@@ -33,6 +33,24 @@ ContactSurface combine(const Surface& a, const Surface& b) {
     return s;
 }
 
+Surface with_defaults(const Material& given, float friction, float restitution) {
+    float fixed = given.static_friction.value_or(friction);
+    return {fixed, given.dynamic_friction.value_or(fixed), given.restitution.value_or(restitution),
+            given.friction_combine, given.restitution_combine};
+}
+
+void ColliderStore::copy(const ColliderStore& o) {
+    slots.copy(o.slots);
+    copy_array(o.geometry, geometry);
+    copy_array(o.local, local);
+    copy_array(o.surface, surface);
+    copy_array(o.info, info);
+    copy_array(o.place, place);
+    shape = o.shape;
+    given = o.given;
+    material = o.material;
+}
+
 uint32_t ColliderStore::add() {
     uint32_t slot = slots.add();
     size_t n = slots.capacity();
@@ -41,7 +59,7 @@ uint32_t ColliderStore::add() {
     surface.resize(n, Surface{});
     info.resize(n);
     place.resize(n);
-    if (shape.size() < n) shape.resize(n), given.resize(n);
+    if (shape.size() < n) shape.resize(n), given.resize(n), material.resize(n);
     info[slot] = {};
     return slot;
 }

@@ -18,6 +18,8 @@ struct Surface {
     CombineRule friction_combine, restitution_combine;
 };
 
+Surface with_defaults(const Material& given, float friction, float restitution);
+
 // The surface of a contact. Where rules disagree the one that comes first in CombineRule wins.
 struct ContactSurface {
     float static_friction, dynamic_friction, restitution;
@@ -53,13 +55,16 @@ struct ColliderStore {
     Array<Surface> surface;
     Array<ColliderInfo> info;
     Array<ColliderPlace> place;
-    std::vector<Shape> shape;      // as given, keeps shared hulls and meshes alive
-    std::vector<Transform> given;  // as given, in the user's body frame
+    std::vector<Shape> shape;        // as given, keeps shared hulls and meshes alive
+    std::vector<Transform> given;    // as given, in the user's body frame
+    std::vector<Material> material;  // as given, without the world's defaults
 
     ColliderStore(const Memory* memory, uint32_t world)
         : slots(memory, world), geometry(memory), local(memory), surface(memory), info(memory), place(memory) {}
 
     uint32_t add();
+    // Becomes a copy of another world's colliders, with their handles; hulls and meshes are shared.
+    void copy(const ColliderStore& o);
     ColliderId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }
     bool alive(ColliderId c) const { return slots.alive(c.index, c.generation); }
     void update_place(uint32_t slot, Quat body_orientation) {

@@ -26,6 +26,16 @@ void JointStore::remove(uint32_t slot) {
     slots.remove(slot);
 }
 
+void JointStore::copy(const JointStore& o) {
+    slots.copy(o.slots);
+    copy_array(o.info, info);
+    copy_array(o.impulses, impulses);
+    record.assign(o.record.size(), -1);
+    copy_array(o.next_, next_);
+    copy_array(o.first_, first_);
+    name = o.name;
+}
+
 void JointStore::hang(uint32_t body, uint32_t link) {
     if (first_.size() <= body) first_.resize(body + 1, no_joint_link);
     next_[link] = first_[body];

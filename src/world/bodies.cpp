@@ -38,7 +38,7 @@ Result<Surface> make_surface(const WorldConfig& config, const Material& m, const
     if (!sliding) return sliding.error();
     Result<float> bounce = coefficient(m.restitution, config.restitution, 1.0f, "restitution", call);
     if (!bounce) return bounce.error();
-    return Surface{fixed.value(), sliding.value(), bounce.value(), m.friction_combine, m.restitution_combine};
+    return with_defaults(m, config.friction, config.restitution);
 }
 
 Result<CheckedCollider> check_collider(WorldData& world, const ColliderDef& def, bool moves, const char* call) {
@@ -153,6 +153,7 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
         world.colliders.geometry[slot] = c.geometry;
         world.colliders.surface[slot] = c.surface;
         world.colliders.given[slot] = c.def.local;
+        world.colliders.material[slot] = c.def.material;
         world.colliders.local[slot] = to_principal * c.def.local;
         world.colliders.shape[slot] = std::move(c.def.shape);
         (last == no_slot ? info.first_collider : world.colliders.info[last].next) = slot;
