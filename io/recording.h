@@ -1,9 +1,15 @@
 // Recordings: the poses of all bodies after every step, compact enough to keep and simple enough to read anywhere.
 //
 // Little endian throughout; f32 and f64 are IEEE 754. A file is a header and a list of chunks:
-//   header  8 bytes "LENDREC\n", u32 version = 1, u32 length of the scene's name, f64 dt (s), the name (UTF-8)
-//   'B'     a body, numbered from 0 in the order of these chunks: u8 type (0 static, 1 kinematic, 2 dynamic),
+//   header  8 bytes "LENDREC\n", u32 version = 2 (1: without shapes), u32 length of the scene's name, f64 dt (s), the
+//   name (UTF-8) 'B'     a body, numbered from 0 in the order of these chunks: u8 type (0 static, 1 kinematic, 2
+//   dynamic),
 //           u8 length of the name, the name, then its pose: 3 f32 position (m), 4 i16 orientation (x y z w, in 1/32767)
+//   'M'     the surface of a hull or a mesh, numbered from 0: u32 vertices, u32 triangles, 3 f32 a vertex (m), 3 u32 a
+//           triangle
+//   'S'     a shape of a body, before its first step: u32 body, u8 type (as PlainShape), u8 1 for a trigger, u32
+//   surface
+//           or 2^32 - 1, 4 f32 size, f32 rounding, 3 f32 position and 4 f32 orientation on the body
 //   'X'     u32 number of a body that is removed
 //   'F'     a step: u32 count, then for each body whose pose is not that of the step before, in ascending order:
 //           u32 number, and its pose as above
@@ -47,6 +53,8 @@ public:
 private:
     RecordingWriter() = default;
     Status sync_bodies(const World& world);
+    void put_shapes(const StaticBodyRef& body, uint32_t number);
+    uint32_t put_surface(const Shape& shape);
     Status flush();
     template <class T>
     void put(T value);
@@ -58,6 +66,8 @@ private:
     uint32_t steps_ = 0;
     std::map<uint64_t, uint32_t> numbers_;  // of the live bodies, by body id
     std::vector<RecordedPose> poses_;
+    std::map<const void*, uint32_t> surfaces_;  // numbers of those written
+    std::vector<Shape> shapes_;                 // keeps them alive
 };
 
 // Reads a recording step by step. Everything is checked: a file that is truncated, altered or no recording gives an
@@ -77,7 +87,8 @@ public:
 
     const std::string& scene() const { return scene_; }
     double dt() const { return dt_; }
-    uint32_t steps() const { return steps_; }  // read so far
+    uint32_t steps() const { return steps_; }    // read so far
+    uint32_t shapes() const { return shapes_; }  // read so far
     uint64_t poses_read() const { return poses_read_; }
     uint64_t world_hash() const { return hash_; }  // once next_step() has given false
     uint64_t bytes() const { return offset_; }
@@ -95,6 +106,8 @@ private:
     RecordedPose get_pose();
     void read_header();
     void read_body();
+    void read_surface();
+    void read_shape();
     void read_step();
     void read_end();
     Error error(const Broken& broken) const;
@@ -102,7 +115,7 @@ private:
     std::unique_ptr<std::ifstream> in_;
     std::string path_, scene_, names_;
     double dt_ = 0.0;
-    uint32_t steps_ = 0;
+    uint32_t steps_ = 0, version_ = 0, shapes_ = 0, surfaces_ = 0;
     uint64_t hash_ = 0, poses_read_ = 0, offset_ = 0, checksum_ = 14695981039346656037ull;
     bool ended_ = false;
     std::vector<Body> bodies_;

@@ -54,8 +54,9 @@ void RecordingReader::read_header() {
     char magic[8];
     get_bytes(magic, sizeof magic);
     if (std::memcmp(magic, "LENDREC\n", sizeof magic) != 0) throw Broken{"is no recording"};
-    uint32_t version = get<uint32_t>();
-    if (version != 1) throw Broken{"is a recording of version " + std::to_string(version) + ", not 1"};
+    version_ = get<uint32_t>();
+    if (version_ != 1 && version_ != 2)
+        throw Broken{"is a recording of version " + std::to_string(version_) + ", not 1 or 2"};
     uint32_t length = get<uint32_t>();
     if (length > 255) throw Broken{"gives the scene a name of " + std::to_string(length) + " bytes"};
     dt_ = get<double>();
@@ -77,6 +78,33 @@ void RecordingReader::read_body() {
     body.live = true;
     body.pose = get_pose();
     bodies_.push_back(body);
+}
+
+// Surfaces and shapes are checked, not kept: they are for viewers.
+void RecordingReader::read_surface() {
+    const uint32_t vertices = get<uint32_t>(), triangles = get<uint32_t>();
+    for (uint64_t i = 0; i < 3 * uint64_t{vertices}; ++i)
+        if (!std::isfinite(get<float>())) throw Broken{"holds a vertex that is not finite"};
+    for (uint64_t i = 0; i < 3 * uint64_t{triangles}; ++i)
+        if (get<uint32_t>() >= vertices) throw Broken{"holds a triangle of a vertex that is not there"};
+    ++surfaces_;
+}
+
+void RecordingReader::read_shape() {
+    const uint32_t body = get<uint32_t>();
+    const uint8_t type = get<uint8_t>(), trigger = get<uint8_t>();
+    const uint32_t surface = get<uint32_t>();
+    constexpr size_t hull = 7, mesh = 9, field = 10;  // among the alternatives of Shape
+    static_assert(std::is_same_v<std::variant_alternative_t<hull, Shape>, ConvexHull> &&
+                  std::is_same_v<std::variant_alternative_t<mesh, Shape>, TriangleMesh> &&
+                  std::is_same_v<std::variant_alternative_t<field, Shape>, HeightField>);
+    const bool has_surface = type == hull || type == mesh || type == field;
+    if (body >= bodies_.size() || type >= std::variant_size_v<Shape> || trigger > 1 ||
+        (has_surface ? surface >= surfaces_ : surface != ~0u))
+        throw Broken{"holds a shape that cannot be"};
+    for (int i = 0; i < 12; ++i)
+        if (!std::isfinite(get<float>())) throw Broken{"holds a shape that is not finite"};
+    ++shapes_;
 }
 
 void RecordingReader::read_step() {
@@ -132,6 +160,12 @@ Result<bool> RecordingReader::next_step() {
             switch (get<char>()) {
                 case 'B':
                     read_body();
+                    break;
+                case 'M':
+                    read_surface();
+                    break;
+                case 'S':
+                    read_shape();
                     break;
                 case 'X': {
                     uint32_t number = get<uint32_t>();

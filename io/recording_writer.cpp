@@ -4,12 +4,14 @@
 
 #include "io/file.h"
 #include "io/recording.h"
+#include "scenes/plain_shape.h"
 
 namespace lendulet {
 
 namespace {
 
 constexpr size_t flush_bytes = 1 << 16;
+constexpr uint32_t no_surface = ~0u;
 
 uint64_t key_of(BodyId id) { return static_cast<uint64_t>(id.index) << 32 | id.generation; }
 
@@ -58,7 +60,7 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& path, std::st
     writer.path_ = path;
     writer.out_ = std::make_unique<std::ofstream>(path, std::ios::binary | std::ios::trunc);
     writer.pending_ = "LENDREC\n";
-    writer.put(uint32_t{1});
+    writer.put(uint32_t{2});
     scene = scene.substr(0, 255);
     writer.put(static_cast<uint32_t>(scene.size()));
     writer.put(dt);
@@ -106,8 +108,43 @@ Status RecordingWriter::sync_bodies(const World& world) {
         pending_ += name;
         poses_.push_back(quantised(body.position(), body.orientation()));
         put_pose(poses_.back());
+        put_shapes(body, number);
     }
     return {};
+}
+
+uint32_t RecordingWriter::put_surface(const Shape& shape) {
+    const void* surface = surface_of(shape);
+    if (!surface) return no_surface;
+    auto [it, is_new] = surfaces_.try_emplace(surface, static_cast<uint32_t>(surfaces_.size()));
+    if (!is_new) return it->second;
+    shapes_.push_back(shape);
+    auto write = [&](const auto& s) {
+        const auto vertices = s.vertices();
+        const std::vector<uint32_t> indices = s.triangles();
+        pending_ += 'M';
+        put(static_cast<uint32_t>(vertices.size())), put(static_cast<uint32_t>(indices.size() / 3));
+        for (Vec3 v : vertices) put(v.x), put(v.y), put(v.z);
+        for (uint32_t i : indices) put(i);
+    };
+    if (const auto* hull = std::get_if<ConvexHull>(&shape)) write(*hull);
+    else if (const auto* field = std::get_if<HeightField>(&shape)) write(*field);
+    else write(std::get<TriangleMesh>(shape));
+    return it->second;
+}
+
+void RecordingWriter::put_shapes(const StaticBodyRef& body, uint32_t number) {
+    for (int i = 0; i < body.collider_count(); ++i) {
+        const uint32_t surface = put_surface(body.shape(i));
+        const PlainShape shape = plain(body.shape(i));
+        const Transform local = body.collider_pose(i);
+        pending_ += 'S';
+        put(number), put(static_cast<uint8_t>(shape.type)), put(static_cast<uint8_t>(body.is_trigger(i))), put(surface);
+        for (float size : shape.size) put(size);
+        put(shape.rounding);
+        put(local.translation.x), put(local.translation.y), put(local.translation.z);
+        put(local.rotation.x), put(local.rotation.y), put(local.rotation.z), put(local.rotation.w);
+    }
 }
 
 Status RecordingWriter::add_step(const World& world) {

@@ -31,6 +31,22 @@ SceneDescription newtons_cradle(int balls);
 // ragdolls.cpp
 SceneDescription ragdolls(int count);
 
+SceneDescription ragdoll_avalanche(int count);
+
+// gallery/structures.cpp, vehicles.cpp, machines.cpp, walker.cpp, flow.cpp, spin.cpp
+SceneDescription domino_spiral(int count);
+SceneDescription brick_tower(int courses);
+SceneDescription arch(int stones);
+SceneDescription card_house(int storeys);
+SceneDescription bridge(int planks);
+SceneDescription car(int);
+SceneDescription gear_train(int gears);
+SceneDescription walker(int);
+SceneDescription hourglass(int grains);
+SceneDescription marble_machine(int marbles);
+SceneDescription t_handle(int);
+SceneDescription ten_thousand_boxes(int);
+
 // motion.cpp: kinematic motion, sleep, free rotation
 SceneDescription tumbler(int side);
 SceneDescription large_world_sleep(int count);

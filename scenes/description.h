@@ -22,7 +22,7 @@ struct SceneBody {
     Vec3 angular_velocity;      // world frame, rad/s
     std::optional<float> mass;  // kg; unset: from the colliders' densities
     bool allow_sleep = true;
-    std::string name;
+    std::string name;  // "glass" is drawn so that one sees through it
 };
 
 // A joint by one frame in the world, at the bodies' first poses.
@@ -34,6 +34,8 @@ struct SceneJoint {
     Limit limit;                  // hinge: rad, slider: m
     float swing_limit = 4.0f;     // ball: rad, > pi: free
     Limit twist_limit;            // ball: rad
+    Motor motor;                  // hinge and slider
+    Spring spring;                // hinge and slider
 };
 
 // The triangles that a TriangleMesh of the scene was made of, for those who need them back.

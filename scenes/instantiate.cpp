@@ -31,6 +31,8 @@ Status add(World& world, const SceneJoint& joint, const std::vector<BodyId>& ids
     def.value().limit = joint.limit;
     def.value().swing_limit = joint.swing_limit;
     def.value().twist_limit = joint.twist_limit;
+    def.value().motor = joint.motor;
+    def.value().spring = joint.spring;
     Result<JointId> id = world.add_joint(def.value());
     if (!id) return id.error();
     return {};

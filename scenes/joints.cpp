@@ -3,17 +3,6 @@
 #include "scenes/parts.h"
 
 namespace lendulet::scenes {
-namespace {
-
-SceneJoint& add_ball_joint(SceneDescription& scene, int a, int b, Position anchor) {
-    SceneJoint& joint = scene.joints.emplace_back();
-    joint.body_a = a;
-    joint.body_b = b;
-    joint.anchor = anchor;
-    return joint;
-}
-
-}  // namespace
 
 // A net in a vertical plane, hanging from its top row; every ball is joined to the ones above and to the left of it.
 SceneDescription joint_grid(int side) {
@@ -74,9 +63,7 @@ SceneDescription newtons_cradle(int balls) {
         Quat turn = i == 0 ? rotation_about(hinge_axis, -0.25f * pi) : Quat{};
         SceneBody& ball = add_body(scene, Sphere{radius}, pivot + rotate(turn, Vec3{0.0f, -rod, 0.0f}), 7800.0f);
         ball.orientation = turn;
-        SceneJoint& hinge = add_ball_joint(scene, 0, i + 1, pivot);
-        hinge.type = JointType::hinge;
-        hinge.axis = hinge_axis;
+        add_hinge(scene, 0, i + 1, pivot, hinge_axis);
     }
     return scene;
 }

@@ -8,12 +8,6 @@ namespace {
 constexpr Position drum_centre{0.0f, 21.0f, 0.0f};
 constexpr Vec3 drum_axis{0.0f, 0.0f, 1.0f};
 
-void add_part(SceneBody& body, Shape shape, Transform local) {
-    ColliderDef& collider = body.colliders.emplace_back();
-    collider.shape = std::move(shape);
-    collider.local = local;
-}
-
 // 36 walls round the axis, four paddles, two caps.
 SceneBody drum() {
     SceneBody body;

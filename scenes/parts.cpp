@@ -33,6 +33,53 @@ void add_container(SceneDescription& scene, float inner, float height) {
     add_static(scene, Box{{inner, half, t}}, {0.0f, half, -middle});
 }
 
+ColliderDef& add_part(SceneBody& body, Shape shape, Transform local, float density) {
+    ColliderDef& collider = body.colliders.emplace_back();
+    collider.shape = std::move(shape);
+    collider.local = local;
+    collider.density = density;
+    return collider;
+}
+
+SceneJoint& add_ball_joint(SceneDescription& scene, int a, int b, Position anchor) {
+    SceneJoint& joint = scene.joints.emplace_back();
+    joint.body_a = a;
+    joint.body_b = b;
+    joint.anchor = anchor;
+    return joint;
+}
+
+SceneJoint& add_hinge(SceneDescription& scene, int a, int b, Position anchor, Vec3 axis) {
+    SceneJoint& joint = add_ball_joint(scene, a, b, anchor);
+    joint.type = JointType::hinge;
+    joint.axis = axis;
+    return joint;
+}
+
+float terrain_height(float x, float z) {
+    float hills = 3.0f * sin_cos(0.15f * x).sin * sin_cos(0.15f * z).cos;
+    return hills + 0.3f * sin_cos(1.1f * x).sin * sin_cos(0.9f * z).sin;
+}
+
+void add_terrain(SceneDescription& scene, uint32_t cells, float cell, float rise) {
+    std::vector<Vec3> vertices;
+    std::vector<uint32_t> indices;
+    float half = 0.5f * static_cast<float>(cells) * cell;
+    for (uint32_t row = 0; row <= cells; ++row)
+        for (uint32_t column = 0; column <= cells; ++column) {
+            float x = static_cast<float>(column) * cell - half, z = static_cast<float>(row) * cell - half;
+            vertices.push_back({x, rise * terrain_height(x, z), z});
+        }
+    for (uint32_t row = 0; row < cells; ++row)
+        for (uint32_t column = 0; column < cells; ++column) {
+            uint32_t a = row * (cells + 1) + column, b = a + 1, c = a + cells + 1, d = c + 1;
+            for (uint32_t corner : {a, c, b, b, c, d}) indices.push_back(corner);
+        }
+    TriangleMesh mesh = TriangleMesh::from_triangles(vertices, indices).value();
+    add_static(scene, mesh, {}).name = "terrain";
+    scene.meshes.push_back({std::move(vertices), std::move(indices), std::move(mesh)});
+}
+
 ConvexHull rock(Random& random, int count, float radius) {
     float y = radius * random.range(0.75f, 1.0f);
     float z = radius * random.range(0.75f, 1.0f);

@@ -19,6 +19,21 @@ void add_ground(SceneDescription& scene, float half);
 // An open-topped square container on a floor at y = 0 whose inner half width is `inner`.
 void add_container(SceneDescription& scene, float inner, float height);
 
+// Another shape on a body.
+ColliderDef& add_part(SceneBody& body, Shape shape, Transform local = {}, float density = light_density);
+
+// Joints between bodies by their indices.
+SceneJoint& add_ball_joint(SceneDescription& scene, int a, int b, Position anchor);
+SceneJoint& add_hinge(SceneDescription& scene, int a, int b, Position anchor, Vec3 axis);
+// Index of the body that was added last.
+inline int last_body(const SceneDescription& scene) { return static_cast<int>(scene.bodies.size()) - 1; }
+
+// Long hills with short waves on them, m.
+float terrain_height(float x, float z);
+// The same as a mesh: a square of `cells` x `cells` quads of two triangles each, centred on the
+// origin; heights times `rise`.
+void add_terrain(SceneDescription& scene, uint32_t cells, float cell, float rise = 1.0f);
+
 // The hull of `count` random points on an ellipsoid with radii between 0.75 and 1 times `radius`.
 ConvexHull rock(Random& random, int count, float radius);
 

@@ -36,33 +36,7 @@ SceneDescription pile(Kind kind, int count, float spacing) {
     return scene;
 }
 
-// Long hills with short waves on them, m.
-float terrain_height(float x, float z) {
-    float hills = 3.0f * sin_cos(0.15f * x).sin * sin_cos(0.15f * z).cos;
-    return hills + 0.3f * sin_cos(1.1f * x).sin * sin_cos(0.9f * z).sin;
-}
-
-// A square of `cells` x `cells` quads of two triangles each, centred on the origin.
-void add_terrain(SceneDescription& scene, uint32_t cells, float cell) {
-    std::vector<Vec3> vertices;
-    std::vector<uint32_t> indices;
-    float half = 0.5f * static_cast<float>(cells) * cell;
-    for (uint32_t row = 0; row <= cells; ++row)
-        for (uint32_t column = 0; column <= cells; ++column) {
-            float x = static_cast<float>(column) * cell - half, z = static_cast<float>(row) * cell - half;
-            vertices.push_back({x, terrain_height(x, z), z});
-        }
-    for (uint32_t row = 0; row < cells; ++row)
-        for (uint32_t column = 0; column < cells; ++column) {
-            uint32_t a = row * (cells + 1) + column, b = a + 1, c = a + cells + 1, d = c + 1;
-            for (uint32_t corner : {a, c, b, b, c, d}) indices.push_back(corner);
-        }
-    TriangleMesh mesh = TriangleMesh::from_triangles(vertices, indices).value();
-    add_static(scene, mesh, {}).name = "terrain";
-    scene.meshes.push_back({std::move(vertices), std::move(indices), std::move(mesh)});
-}
-
-// The same hills as a height field, of rock below, with bands of mud and of ice across the slopes.
+// The hills of add_terrain() as a height field, of rock below, with bands of mud and of ice across the slopes.
 void add_height_field(SceneDescription& scene, int cells, float cell) {
     static const Material table[] = {
         {.static_friction = 0.6f, .dynamic_friction = 0.5f},
@@ -92,6 +66,7 @@ void add_height_field(SceneDescription& scene, int cells, float cell) {
 }  // namespace
 
 SceneDescription box_pile(int count) { return pile(Kind::box, count, 1.8f); }
+SceneDescription ten_thousand_boxes(int) { return box_pile(10000); }
 SceneDescription sphere_pile(int count) { return pile(Kind::sphere, count, 1.1f); }
 SceneDescription capsule_pile(int count) { return pile(Kind::capsule, count, 1.45f); }
 SceneDescription convex_pile(int count) { return pile(Kind::convex, count, 1.25f); }

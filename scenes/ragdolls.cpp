@@ -91,4 +91,35 @@ SceneDescription ragdolls(int count) {
     return scene;
 }
 
+// Ragdolls slide down a slope between posts.
+SceneDescription ragdoll_avalanche(int count) {
+    constexpr float angle = 0.52f;  // rad
+    constexpr Vec3 back{0.0f, 0.0f, 1.0f};
+    SceneDescription scene;
+    scene.steps = 900;
+    scene.friction = 0.25f;
+    add_ground(scene, 60.0f);
+    const Quat tilt = rotation_about(back, -angle);
+    const SinCos slope = sin_cos(angle);
+    auto on_slope = [&](float along, float across, float above) {  // along: from its foot at x = 4
+        return Position{4.0f - along * slope.cos + above * slope.sin, along * slope.sin + above * slope.cos, across};
+    };
+    add_static(scene, Box{{11.0f, 0.5f, 6.0f}}, on_slope(11.0f, 0.0f, -0.5f)).orientation = tilt;
+    for (float side : {-6.1f, 6.1f})
+        add_static(scene, Box{{11.0f, 1.0f, 0.1f}}, on_slope(11.0f, side, 0.5f)).orientation = tilt;
+    for (int i = 0; i < 9; ++i) {
+        float along = 4.0f + 3.0f * static_cast<float>(i / 3);
+        float across = 3.6f * static_cast<float>(i % 3 - 1) + (i / 3 % 2 != 0 ? 1.8f : 0.0f);
+        add_static(scene, Cylinder{0.8f, 0.18f}, on_slope(along, across, 0.8f)).orientation = tilt;
+    }
+    Random random;
+    for (int i = 0; i < count; ++i) {
+        float along = 14.5f + 1.5f * static_cast<float>(i / 6 % 5), across = 1.9f * (static_cast<float>(i % 6) - 2.5f);
+        Position position = on_slope(along, across, 0.4f + 2.6f * static_cast<float>(i / 30));
+        Quat turn = rotation_about(up, random.range(1.2f, 1.9f));
+        add_ragdoll(scene, {position, turn}, static_cast<uint32_t>(i) + 1);
+    }
+    return scene;
+}
+
 }  // namespace lendulet::scenes

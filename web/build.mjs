@@ -1,7 +1,8 @@
 // Builds the static page: node build.mjs MODULE.wasm FOLDER
+// MODULE "-": without an engine of its own, for a native one behind the server.
 import { build } from "esbuild";
-import { copyFileSync, mkdirSync } from "node:fs";
-import { join } from "node:path";
+import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const [module, folder] = process.argv.slice(2);
@@ -22,4 +23,11 @@ await build({
     logLevel: "warning",
 });
 for (const file of ["index.html", "style.css", "icon.svg"]) copyFileSync(join(here, file), join(folder, file));
-copyFileSync(module, join(folder, "lendulet.wasm"));
+if (module !== "-") {
+    if (resolve(module) !== resolve(folder, "lendulet.wasm")) copyFileSync(module, join(folder, "lendulet.wasm"));
+} else {
+    const page = readFileSync(join(here, "index.html"), "utf8");
+    const without = '<head>\n<meta name="lendulet-wasm" content="no">';
+    writeFileSync(join(folder, "index.html"), page.replace("<head>", without));
+    for (const file of ["lendulet.wasm", "native-hashes.json"]) rmSync(join(folder, file), { force: true });
+}

@@ -156,6 +156,26 @@ void finish_verify_options(const std::string& cases, const std::string& quality,
     if (!quality.empty()) options.run.quality = choice("--quality", verify::quality_from_name(quality));
 }
 
+void add_view_options(CLI::App& command, ViewOptions& options, std::string& give_up) {
+    command.add_option("SCENE", options.scene, "a built-in scene, a .gltf or .glb file, or a recording")->required();
+    command.add_option("--port", options.port, "where to serve, 0: any (default 8080)")
+        ->type_name("N")
+        ->check(CLI::Range(0, 65535));
+    command.add_flag("--any-port", options.any_port, "take another port where that one is taken");
+    command.add_option("--page", options.page, "folder of the viewer's page (default: as built beside the program)")
+        ->type_name("FOLDER");
+    command.add_option("--threads", options.threads, "threads of the simulation, 1 to 64 (default 1)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 64));
+    command.add_option("--give-up", give_up, "end after so many seconds without a visitor, 0: never (default)")
+        ->type_name("S");
+}
+
+void finish_view_options(const std::string& give_up, ViewOptions& options) {
+    if (!give_up.empty()) options.give_up = parse_number("--give-up", give_up);
+    if (!(options.give_up >= 0.0 && options.give_up < 1e6)) throw BadOption{"--give-up must be 0 to 1e6 s"};
+}
+
 // An empty list or file name would pass for an option that was not given.
 void refuse_empty(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options()) {
@@ -170,13 +190,15 @@ int finish(const Result<int>& measured) { return measured.ok() ? measured.value(
 }  // namespace
 
 int execute(int argc, char** argv) {
-    if (argc < 2) return fail("a command is required: run, info, scenes, verify, explain or bench (--help says more)");
+    if (argc < 2)
+        return fail("a command is required: run, view, info, scenes, verify, explain or bench (--help says more)");
     std::string first = argv[1];
     bool known = first.rfind('-', 0) == 0;
-    for (const char* command : {"run", "info", "scenes", "verify", "explain", "bench"}) known |= first == command;
+    for (const char* command : {"run", "view", "info", "scenes", "verify", "explain", "bench"})
+        known |= first == command;
     if (!known) {
         return fail("\"" + printable(first) +
-                    "\" is no command; there are run, info, scenes, verify, explain and bench");
+                    "\" is no command; there are run, view, info, scenes, verify, explain and bench");
     }
     CLI::App app{"Lendulet: rigid bodies in three dimensions.", "lendulet"};
     app.set_version_flag("--version", "lendulet " LENDULET_VERSION);
@@ -186,6 +208,10 @@ int execute(int argc, char** argv) {
     std::string recording;
     CLI::App* run_command = app.add_subcommand("run", "simulate a scene and print a summary");
     add_run_options(*run_command, options, raw);
+    CLI::App* view_command = app.add_subcommand("view", "show a scene in the browser, simulated by this program");
+    ViewOptions view_options;
+    std::string give_up;
+    add_view_options(*view_command, view_options, give_up);
     CLI::App* info_command = app.add_subcommand("info", "check and describe a recording");
     info_command->add_option("FILE", recording, "a recording made by `lendulet run --record`")->required();
     CLI::App* scenes_command = app.add_subcommand("scenes", "list the built-in scenes");
@@ -210,6 +236,10 @@ int execute(int argc, char** argv) {
     try {
         app.parse(argc, argv);
         if (run_command->parsed()) finish_run_options(*run_command, raw, options);
+        if (view_command->parsed()) {
+            refuse_empty(*view_command);
+            finish_view_options(give_up, view_options);
+        }
         if (verify_command->parsed()) {
             refuse_empty(*verify_command);
             finish_verify_options(verify_cases, verify_quality, verify_options);
@@ -225,6 +255,7 @@ int execute(int argc, char** argv) {
         return fail(bad.sentence);
     }
     if (run_command->parsed()) return run(options);
+    if (view_command->parsed()) return view(view_options);
     if (info_command->parsed()) return info(recording);
     if (scenes_command->parsed()) return list_scenes();
     if (verify_command->parsed()) return verify(verify_options);

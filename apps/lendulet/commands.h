@@ -29,7 +29,20 @@ struct VerifyOptions {
     std::string json, html, svg;  // files, empty for none; json "-": standard output
 };
 
+struct ViewOptions {
+    std::string scene;  // a built-in scene's name, a .gltf or .glb file, or a recording
+    std::string page;   // folder; empty: the one that was built beside the program
+    int port = 8080;
+    bool any_port = false;  // another one where that is taken
+    int threads = 1;
+    double give_up = 0.0;  // s without a visitor after which it ends; 0: never
+};
+
+// Whether a name is that of a glTF file.
+bool is_gltf(const std::string& name);
+
 int run(const RunOptions& options);
+int view(const ViewOptions& options);
 int verify(const VerifyOptions& options);  // 1 where a figure is outside its tolerance
 int info(const std::string& file);
 int list_scenes();

@@ -26,6 +26,7 @@ int info(const std::string& file) {
     std::printf("  steps       %u of %.6g s, %.6g s in all\n", recording.steps(), recording.dt(), seconds);
     std::printf("  bodies      %d static, %d kinematic, %d dynamic, %d of them removed on the way\n", counts[0],
                 counts[1], counts[2], removed);
+    std::printf("  shapes      %u\n", recording.shapes());
     std::printf("  poses       %llu that differ from the step before\n",
                 static_cast<unsigned long long>(recording.poses_read()));
     std::printf("  size        %llu bytes, checksum right\n", static_cast<unsigned long long>(recording.bytes()));

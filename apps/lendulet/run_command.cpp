@@ -44,9 +44,7 @@ Configure configuration(const RunOptions& options) {
 }
 
 Result<Scene> open_scene(const RunOptions& options) {
-    if (ends_with(options.scene, ".gltf") || ends_with(options.scene, ".glb")) {
-        return load_gltf(options.scene, configuration(options));
-    }
+    if (is_gltf(options.scene)) return load_gltf(options.scene, configuration(options));
     return build_scene(options.scene, configuration(options));
 }
 
@@ -98,6 +96,8 @@ Status report(const RunSummary& summary, const RunOptions& options) {
 }
 
 }  // namespace
+
+bool is_gltf(const std::string& name) { return ends_with(name, ".gltf") || ends_with(name, ".glb"); }
 
 int run(const RunOptions& options) {
     Result<Scene> opened = open_scene(options);

@@ -27,6 +27,11 @@ struct lendulet_world {
     std::vector<uint32_t> indices;
     std::vector<lendulet_contact> contacts;
     std::vector<uint8_t> snapshot;
+    std::vector<lendulet_joint_state> joints;
+    std::vector<lendulet_box> boxes;
+    std::vector<lendulet_group> groups;
+    std::vector<lendulet_motion> motions;
+    std::vector<lendulet::Shape> given;  // hulls and meshes for parts
 };
 
 namespace lendulet::c {

@@ -1,9 +1,12 @@
 // The C interface: what is read of a world. Lists are filled when they are asked for.
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <type_traits>
 
 #include "bindings/c/handle.h"
+#include "scenes/plain_shape.h"
 
 using namespace lendulet;
 using namespace lendulet::c;
@@ -29,30 +32,6 @@ lendulet_pose pose_of(const World& world, BodyId id) {
     return pose;
 }
 
-// Fills type, size and rounding; the index of the alternative is the type's number.
-struct Describe {
-    lendulet_collider& out;
-    void sizes(float a, float b = 0.0f, float c = 0.0f, float d = 0.0f) {
-        out.size[0] = a, out.size[1] = b, out.size[2] = c, out.size[3] = d;
-    }
-    void operator()(const Sphere& s) { sizes(s.radius); }
-    void operator()(const Capsule& s) { sizes(s.half_height, s.radius); }
-    void operator()(const TaperedCapsule& s) { sizes(s.half_height, s.bottom_radius, s.top_radius); }
-    void operator()(const Box& s) {
-        sizes(s.half_extents.x, s.half_extents.y, s.half_extents.z);
-        out.rounding = s.rounding;
-    }
-    void operator()(const Cylinder& s) { sizes(s.half_height, s.radius), out.rounding = s.rounding; }
-    void operator()(const TaperedCylinder& s) {
-        sizes(s.half_height, s.bottom_radius, s.top_radius), out.rounding = s.rounding;
-    }
-    void operator()(const Cone& s) { sizes(s.half_height, s.radius), out.rounding = s.rounding; }
-    void operator()(const ConvexHull& s) { out.rounding = s.rounding(); }
-    void operator()(const Plane& s) { sizes(s.normal.x, s.normal.y, s.normal.z, s.offset); }
-    void operator()(const TriangleMesh&) {}
-    void operator()(const HeightField&) {}
-};
-
 template <class T, int Number>
 constexpr bool is_number = std::is_same_v<std::variant_alternative_t<Number, Shape>, T>;
 static_assert(is_number<Sphere, LENDULET_SPHERE> && is_number<Capsule, LENDULET_CAPSULE> &&
@@ -61,14 +40,6 @@ static_assert(is_number<Sphere, LENDULET_SPHERE> && is_number<Capsule, LENDULET_
               is_number<Cone, LENDULET_CONE> && is_number<ConvexHull, LENDULET_HULL> &&
               is_number<Plane, LENDULET_PLANE> && is_number<TriangleMesh, LENDULET_MESH> &&
               is_number<HeightField, LENDULET_HEIGHT_FIELD>);
-
-// What colliders with the same surface share.
-const void* surface_of(const Shape& shape) {
-    if (const auto* hull = std::get_if<ConvexHull>(&shape)) return &hull->data();
-    if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) return &mesh->data();
-    if (const auto* field = std::get_if<HeightField>(&shape)) return &field->data();
-    return nullptr;
-}
 
 int32_t mesh_number(std::vector<Shape>& meshes, const Shape& shape) {
     const void* surface = surface_of(shape);
@@ -85,12 +56,15 @@ lendulet_collider collider_of(lendulet_world& world, const StaticBodyRef& body, 
     const Shape& shape = body.shape(index);
     Transform local = body.collider_pose(index);
     c.body = body_index;
-    c.type = static_cast<int32_t>(shape.index());
+    c.body_type = static_cast<int32_t>(body.type());
+    const PlainShape numbers = plain(shape);
+    c.type = numbers.type;
+    std::copy(std::begin(numbers.size), std::end(numbers.size), c.size);
+    c.rounding = numbers.rounding;
     c.mesh = mesh_number(world.meshes, shape);
     c.trigger = body.is_trigger(index);
     put(c.position, local.translation);
     put(c.orientation, local.rotation);
-    std::visit(Describe{c}, shape);
     return c;
 }
 

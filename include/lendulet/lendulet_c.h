@@ -11,7 +11,7 @@
  * Units are SI, angles are in radians, the world is right-handed, quaternions are x y z w. One world must not be used
  * by two threads at the same time.
  *
- * This is the beginning of the C interface: built-in scenes, stepping, reading, picking and a few ways to interfere. */
+ * Worlds come from built-in scenes, or start empty and are built of bodies, shapes and joints. */
 #ifndef LENDULET_C_H
 #define LENDULET_C_H
 
@@ -23,7 +23,7 @@ extern "C" {
 #endif
 
 /* Number of this interface; changes where a call or a structure does. */
-#define LENDULET_C_VERSION 1
+#define LENDULET_C_VERSION 2
 uint32_t lendulet_version(void);
 
 typedef struct lendulet_world lendulet_world;
@@ -59,9 +59,33 @@ double lendulet_time(const lendulet_world* world);         /* s simulated */
 uint64_t lendulet_step_count(const lendulet_world* world); /* steps done */
 /* Hash of the state: the same for every machine, compiler and number of threads, native and in WebAssembly. */
 uint64_t lendulet_hash(const lendulet_world* world);
+/* A second world in the same state, which goes its own way: see World::fork(). The same numbers name the same bodies
+ * there. Null on an error. */
+lendulet_world* lendulet_fork(const lendulet_world* world);
 /* m/s^2 */
 lendulet_result lendulet_set_gravity(lendulet_world* world, const float gravity[3]);
 lendulet_result lendulet_read_gravity(const lendulet_world* world, float out[3]);
+
+/* Everything that can be tuned while a world runs; see WorldConfig for ranges and meaning. */
+typedef struct lendulet_settings {
+    float gravity[3];                                      /* m/s^2 */
+    float step_size;                                       /* s, above 0, at most 1 */
+    int32_t solver_steps;                                  /* substeps of a step */
+    int32_t broad_phase, simplex, integrator;              /* see lendulet_choice_name() */
+    int32_t workers, width;                                /* threads, SIMD lanes */
+    int32_t sleep, continuous;                             /* 0 or 1 */
+    float friction, restitution;                           /* of what was given none of its own */
+    float rigid_separation_speed, static_separation_speed; /* m/s */
+} lendulet_settings;
+
+lendulet_result lendulet_read_settings(const lendulet_world* world, lendulet_settings* out);
+/* Changes them between two steps, by a fork of the world that takes its place: snapshots taken before fit no more where
+ * results depend on what has changed. */
+lendulet_result lendulet_set_settings(lendulet_world* world, const lendulet_settings* settings);
+
+enum { LENDULET_BROAD_PHASES = 0, LENDULET_SIMPLEX_SOLVERS = 1, LENDULET_INTEGRATORS = 2 };
+/* Name of a choice of this kind, "rtree-omt"; null beyond the last. */
+const char* lendulet_choice_name(int32_t kind, int32_t choice);
 
 /* --- bodies ------------------------------------------------------------------------------------------------------- */
 
@@ -131,6 +155,7 @@ typedef struct lendulet_collider {
     float size[4];                     /* see the types above */
     float rounding;                    /* radius of the sphere swept around it */
     float position[3], orientation[4]; /* on the body */
+    int32_t body_type;                 /* LENDULET_FIXED ... */
 } lendulet_collider;
 
 lendulet_result lendulet_read_colliders(lendulet_world* world, const lendulet_collider** out);
@@ -144,6 +169,59 @@ typedef struct lendulet_mesh {
 
 /* After lendulet_read_colliders(). */
 lendulet_result lendulet_read_mesh(lendulet_world* world, int32_t mesh, lendulet_mesh* out);
+
+/* --- building ------------------------------------------------------------------------------------------------------
+ */
+
+/* A shape for a body that is to be added. */
+typedef struct lendulet_part {
+    int32_t type;                      /* LENDULET_SPHERE ... */
+    int32_t mesh;                      /* hulls and meshes: what lendulet_add_hull() or lendulet_add_mesh() gave */
+    int32_t trigger;                   /* 1: reports overlaps only */
+    float size[4], rounding;           /* as in lendulet_collider */
+    float position[3], orientation[4]; /* on the body */
+    float density;                     /* kg/m^3 */
+    float friction, restitution;       /* negative: the world's */
+    uint32_t group;                    /* parts of the same group do not meet; 0: none */
+} lendulet_part;
+
+/* The convex hull of points (3 numbers each, m), for parts of this world: its number. */
+lendulet_result lendulet_add_hull(lendulet_world* world, const float* points, int32_t count, float rounding);
+/* Triangles, counter-clockwise from outside. */
+lendulet_result lendulet_add_mesh(lendulet_world* world, const float* vertices, int32_t vertex_count,
+                                  const uint32_t* indices, int32_t triangle_count);
+
+typedef struct lendulet_body_definition {
+    float position[3], orientation[4];
+    float velocity[3], angular_velocity[3]; /* m/s, rad/s */
+    float mass;                             /* kg; 0: from the densities */
+    float linear_damping, angular_damping;  /* 1/s */
+    float gravity_factor;
+    int32_t type;  /* LENDULET_FIXED ... */
+    char name[64]; /* ends with a zero */
+} lendulet_body_definition;
+
+/* `out` may be null. */
+lendulet_result lendulet_add_body(lendulet_world* world, const lendulet_body_definition* definition,
+                                  const lendulet_part* parts, int32_t part_count, lendulet_body* out);
+
+enum { LENDULET_RIGID = 0, LENDULET_BALL = 1, LENDULET_HINGE = 2, LENDULET_SLIDER = 3 };
+
+/* See JointDef: the x axis of the frames is the axis of hinges and sliders; a limit with lower > upper is none. */
+typedef struct lendulet_joint_definition {
+    lendulet_body body_a, body_b;
+    int32_t type;                          /* LENDULET_RIGID ... */
+    int32_t collide;                       /* 1: the two bodies still meet */
+    float position_a[3], orientation_a[4]; /* of the joint's frame on body A */
+    float position_b[3], orientation_b[4];
+    float limit[2];          /* hinge: rad, slider: m */
+    float swing, twist[2];   /* ball: rad; swing > pi: free */
+    float motor_velocity;    /* rad/s or m/s */
+    float motor_force;       /* N m or N, at most; 0: no motor */
+    float spring[2], target; /* stiffness, damping; rad or m */
+} lendulet_joint_definition;
+
+lendulet_result lendulet_add_joint(lendulet_world* world, const lendulet_joint_definition* definition);
 
 /* --- figures -------------------------------------------------------------------------------------------------------
  */
@@ -171,6 +249,50 @@ typedef struct lendulet_contact {
 
 /* Every contact point of the last step. */
 lendulet_result lendulet_read_contacts(lendulet_world* world, const lendulet_contact** out);
+
+/* --- the engine's own structures -----------------------------------------------------------------------------------
+ */
+
+typedef struct lendulet_joint_state {
+    int32_t body_a, body_b, type;      /* indices into the list of bodies; LENDULET_RIGID ... */
+    float position[3], orientation[4]; /* of the joint's frame on body A, in the world */
+    float position_b[3];               /* ... and where the one on body B is */
+    float orientation_b[4];
+    float value, velocity;     /* hinge: rad, rad/s; slider: m, m/s */
+    float limit[2];            /* lower > upper: free */
+    float swing, twist[2];     /* ball */
+    float force[3], torque[3]; /* on B, N and N m */
+} lendulet_joint_state;
+
+lendulet_result lendulet_read_joints(lendulet_world* world, const lendulet_joint_state** out);
+
+/* A box of the broad phase: of a collider, or of a node of its tree. */
+typedef struct lendulet_box {
+    float lower[3];
+    int32_t depth; /* 0: the root, and everything where there are no levels */
+    float upper[3];
+    int32_t leaf; /* 1: a collider's */
+} lendulet_box;
+
+lendulet_result lendulet_read_boxes(lendulet_world* world, const lendulet_box** out);
+
+/* How each body was solved in the last step, by index. */
+typedef struct lendulet_group {
+    int32_t island; /* equal numbers: one island; -1: at rest or static */
+    int32_t colour; /* the first colour in which one of its contacts is solved; -1: none */
+} lendulet_group;
+
+lendulet_result lendulet_read_groups(lendulet_world* world, const lendulet_group** out);
+
+/* Conserved state of each body, by index; zero for static ones. */
+typedef struct lendulet_motion {
+    float centre[3], mass;             /* centre of mass, m; kg, 0 for kinematic bodies */
+    float momentum[3], kinetic_energy; /* kg m/s, J */
+    float angular_momentum[3];         /* about the centre of mass, kg m^2/s */
+    float reach;                       /* m, of a box around it */
+} lendulet_motion;
+
+lendulet_result lendulet_read_motions(lendulet_world* world, const lendulet_motion** out);
 
 /* --- picking and pulling -------------------------------------------------------------------------------------------
  */

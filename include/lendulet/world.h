@@ -148,6 +148,8 @@ public:
     const RigidBodyRef get(BodyId id) const;
     StaticBodyRef get_static(BodyId id) const;  // any body
     JointState joint(JointId id) const;
+    // The joint as it was defined, with the motor that it has now.
+    JointDef joint_def(JointId id) const;
 
     // --- simulation
     // Advances by dt seconds (0 .. 1000; longer steps than 1 s are cut into equal ones of at most 1 s). dt = 0 does
@@ -171,6 +173,14 @@ public:
     // Errors: bad_snapshot (truncated, altered, another version), wrong_world (of a world with other bodies, or one of
     // its bodies or joints was removed since), locked. On an error nothing has changed.
     Status restore(std::span<const uint8_t> snapshot);
+    // A second world in the same state, which goes its own way: left alone, the two compute the same bits. Handles of
+    // this world name the same bodies, colliders and joints there, and hulls and meshes are shared. Hooks for memory
+    // and tasks are the same. query_boxes(), nearest_box() and for_each_aabb() find nothing there before its first
+    // step. O(n). Error: locked.
+    Result<World> fork() const;
+    // The same with other settings: materials that were given no friction or bounciness of their own get the new ones.
+    // Bodies that rest wake where gravity changes or sleep ends. Errors: those of WorldBuilder::build(), locked.
+    Result<World> fork(const WorldConfig& settings) const;
 
     // --- iteration; all in creation order
     int body_count() const;
@@ -182,6 +192,12 @@ public:
     // place of one that goes.
     int contact_count() const;
     Contact contact(int index) const;
+    // The colour in which the solver took each contact of the last step, by index: contacts of one colour share no body
+    // that they move. -1: not solved, since it rests. O(n).
+    std::vector<int> contact_colours() const;
+    // A number that the bodies of an island had in common in the last step: those that touch or are joined and move.
+    // -1 for bodies that rest, for static and for kinematic ones.
+    int64_t island(BodyId id) const;
     std::span<const Overlap> overlaps() const;  // triggers, of the last step; those at rest first
     // Calls visit(AabbView) for every leaf and node box of the broad phase.
     template <class Visit>
@@ -249,6 +265,9 @@ private:
 // Collects settings by name; build() checks them and gives a World or the first error (bad_config, non_finite).
 class WorldBuilder {
 public:
+    WorldBuilder() = default;
+    // Begins with the settings of another world.
+    explicit WorldBuilder(const WorldConfig& config) : config_(config) {}
     WorldBuilder& no_gravity() { return gravity({}); }
     WorldBuilder& down_gravity(float g) { return gravity({0.0f, -g, 0.0f}); }  // m/s^2 along -y
     WorldBuilder& gravity(Vec3 g) { return config_.gravity = g, *this; }

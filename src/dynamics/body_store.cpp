@@ -24,6 +24,18 @@ uint32_t BodyStore::add() {
     return slot;
 }
 
+void BodyStore::copy(const BodyStore& o) {
+    slots.copy(o.slots);
+    copy_array(o.pose, pose);
+    copy_array(o.momenta, momenta);
+    copy_array(o.mass, mass);
+    copy_array(o.forces, forces);
+    copy_array(o.change, change);
+    copy_array(o.info, info);
+    copy_array(o.principal, principal);
+    name = o.name;
+}
+
 Pose BodyStore::user_pose(uint32_t slot) const { return pose[slot] * inverse(principal[slot]); }
 
 void BodyStore::set_user_pose(uint32_t slot, Pose user) {

@@ -79,6 +79,8 @@ struct BodyStore {
           principal(memory) {}
 
     uint32_t add();
+    // Becomes a copy of another world's bodies, with their handles.
+    void copy(const BodyStore& o);
     BodyId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }
     bool alive(BodyId body) const { return slots.alive(body.index, body.generation); }
     // Pose of the user's body frame.

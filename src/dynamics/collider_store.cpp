@@ -48,6 +48,32 @@ const Surface& ColliderStore::surface_at(uint32_t slot, int32_t triangle) const 
     return materials[slot][TriangleSurface(geometry[slot]).material(static_cast<uint32_t>(triangle))];
 }
 
+Surface with_defaults(const Material& given, float friction, float restitution) {
+    float fixed = given.static_friction.value_or(friction);
+    return {fixed,
+            given.dynamic_friction.value_or(fixed),
+            given.restitution.value_or(restitution),
+            given.friction_combine,
+            given.restitution_combine,
+            given.rolling_friction,
+            given.spinning_friction,
+            given.tangential_restitution};
+}
+
+void ColliderStore::copy(const ColliderStore& o) {
+    slots.copy(o.slots);
+    copy_array(o.geometry, geometry);
+    copy_array(o.local, local);
+    copy_array(o.surface, surface);
+    copy_array(o.info, info);
+    copy_array(o.place, place);
+    shape = o.shape;
+    given = o.given;
+    material = o.material;
+    materials = o.materials;
+    table = o.table;
+}
+
 uint32_t ColliderStore::add() {
     uint32_t slot = slots.add();
     size_t n = slots.capacity();
@@ -56,7 +82,7 @@ uint32_t ColliderStore::add() {
     surface.resize(n, Surface{});
     info.resize(n);
     place.resize(n);
-    if (shape.size() < n) shape.resize(n), given.resize(n), materials.resize(n);
+    if (shape.size() < n) shape.resize(n), given.resize(n), material.resize(n), materials.resize(n), table.resize(n);
     info[slot] = {};
     return slot;
 }

@@ -22,6 +22,8 @@ struct Surface {
     }
 };
 
+Surface with_defaults(const Material& given, float friction, float restitution);
+
 // The surface of a contact. Where rules disagree the one that comes first in CombineRule wins.
 struct ContactSurface {
     float static_friction, dynamic_friction, restitution;
@@ -63,8 +65,11 @@ struct ColliderStore {
     Array<ColliderInfo> info;
     Array<ColliderPlace> place;
     std::vector<std::vector<Surface>> materials;  // of triangles; empty: all have `surface`
-    std::vector<Shape> shape;                     // as given, keeps shared hulls and meshes alive
-    std::vector<Transform> given;                 // as given, in the user's body frame
+    // As given: keeps shared hulls and meshes alive; in the user's body frame; without the world's defaults.
+    std::vector<Shape> shape;
+    std::vector<Transform> given;
+    std::vector<Material> material;
+    std::vector<std::vector<Material>> table;  // for `materials`
 
     ColliderStore(const Memory* memory, uint32_t world)
         : slots(memory, world), geometry(memory), local(memory), surface(memory), info(memory), place(memory) {}
@@ -72,6 +77,8 @@ struct ColliderStore {
     uint32_t add();
     // The surface of a collider at one of its triangles (number in the user's list), or at none: -1.
     const Surface& surface_at(uint32_t slot, int32_t triangle) const;
+    // Becomes a copy of another world's colliders, with their handles; hulls and meshes are shared.
+    void copy(const ColliderStore& o);
     ColliderId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }
     bool alive(ColliderId c) const { return slots.alive(c.index, c.generation); }
     void update_place(uint32_t slot, Quat body_orientation) {

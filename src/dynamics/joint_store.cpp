@@ -34,6 +34,18 @@ void JointStore::remove(uint32_t slot) {
     slots.remove(slot);
 }
 
+void JointStore::copy(const JointStore& o) {
+    slots.copy(o.slots);
+    copy_array(o.info, info);
+    copy_array(o.impulses, impulses);
+    record.assign(o.record.size(), -1);
+    copy_array(o.next_, next_);
+    copy_array(o.first_, first_);
+    copy_array(o.axes, axes);
+    copy_array(o.free_axes_, free_axes_);
+    name = o.name;
+}
+
 void JointStore::hang(uint32_t body, uint32_t link) {
     if (first_.size() <= body) first_.resize(body + 1, no_joint_link);
     next_[link] = first_[body];

@@ -73,6 +73,8 @@ struct JointStore {
     // A new joint; hangs it on both bodies. `rows` of joints that have such, else null.
     uint32_t add(const JointInfo& joint, const JointAxesInfo* rows, std::string_view name);
     void remove(uint32_t slot);
+    // Becomes a copy of another world's joints, with their handles; none of them is being solved.
+    void copy(const JointStore& o);
     JointId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }
     bool alive(JointId joint) const { return slots.alive(joint.index, joint.generation); }
     int count() const { return slots.count(); }

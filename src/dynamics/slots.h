@@ -10,6 +10,12 @@
 
 namespace lendulet {
 
+template <class T>
+void copy_array(const Array<T>& from, Array<T>& to) {
+    to.clear();
+    to.append(from.data(), from.size());
+}
+
 class Slots {
 public:
     // `world`: 1 to 255.
@@ -81,6 +87,19 @@ public:
         for (size_t slot = generation_.size(); slot > capacity; --slot)
             free_.push_back(static_cast<uint32_t>(slot - 1));
         free_.append(list.data(), list.size());
+    }
+
+    // Becomes a copy of another world's slots, which knows its handles.
+    void copy(const Slots& o) {
+        first_generation_ = o.first_generation_;
+        count_ = o.count_;
+        copy_array(o.order(), order_);
+        copy_array(o.generation_, generation_);
+        copy_array(o.free_, free_);
+        copy_array(o.alive_, alive_);
+        copy_array(o.place_, place_);
+        first_hole_ = hole;
+        holes_.store(0, std::memory_order_relaxed);
     }
 
 private:

@@ -67,6 +67,16 @@ public:
     // Writes impulses back into the joints given to prepare_joints().
     void store_joints(TaskPool& tasks) { joints_.store(tasks); }
 
+    // Calls visit(record, colour) for every contact that the last prepare() coloured.
+    template <class Visit>
+    void for_each_coloured(Visit&& visit) const {
+        int colour = 0;
+        for (int g = 0; g < schedule_.groups.count(); ++g) {
+            while (g >= schedule_.colour_ends[static_cast<size_t>(colour)]) ++colour;
+            const ContactGroup& group = schedule_.groups[static_cast<size_t>(g)];
+            for (int i = 0; i < group.count; ++i) visit(group.order[i], colour);
+        }
+    }
     int colour_count() const { return schedule_.colour_count(); }
     int overflow() const { return schedule_.overflow; }
     const JointSolver& joints() const { return joints_; }

@@ -46,8 +46,7 @@ Result<Surface> make_surface(const WorldConfig& config, const Material& m, const
     if (!spinning) return spinning.error();
     Result<float> turned = coefficient(m.tangential_restitution, 0.0f, 1.0f, "tangential restitution", call);
     if (!turned) return turned.error();
-    return Surface{fixed.value(),         sliding.value(), bounce.value(),   m.friction_combine,
-                   m.restitution_combine, rolling.value(), spinning.value(), turned.value()};
+    return with_defaults(m, config.friction, config.restitution);
 }
 
 // The table of materials that a collider's triangles choose from.
@@ -192,8 +191,11 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
         world.colliders.surface[slot] = c.surface;
         world.has_extras |= c.surface.has_extra();
         for (const Surface& s : c.materials) world.has_extras |= s.has_extra();
+        world.colliders.table[slot].clear();
+        if (!c.materials.empty()) world.colliders.table[slot].assign(c.def.materials.begin(), c.def.materials.end());
         world.colliders.materials[slot] = std::move(c.materials);
         world.colliders.given[slot] = c.def.local;
+        world.colliders.material[slot] = c.def.material;
         world.colliders.local[slot] = to_principal * c.def.local;
         world.colliders.shape[slot] = std::move(c.def.shape);
         (last == no_slot ? info.first_collider : world.colliders.info[last].next) = slot;
@@ -338,6 +340,7 @@ Status World::remove_body(BodyId id) {
         remove_box(world, c);
         world.colliders.shape[c] = Sphere{};  // lets go of shared hulls, meshes and height fields
         world.colliders.materials[c].clear();
+        world.colliders.table[c].clear();
         world.colliders.info[c].body = no_slot;
         world.colliders.info[c].boxed = false;
         world.query_scene.changed(c);

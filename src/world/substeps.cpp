@@ -55,7 +55,7 @@ void begin_entry(WorldData& world, uint32_t slot) {
     l.inverse_mass = bodies.mass[slot].inverse_mass;
     l.radius = bodies.info[slot].radius;
     l.carried = bodies.mass[slot].mass * bodies.info[slot].gravity_factor;
-    world.island_parent[slot] = slot;
+    world.load_parent[slot] = slot;
     world.loaded.push_back(slot);
 }
 
@@ -72,7 +72,7 @@ bool takes_part(WorldData& world, uint32_t slot) {
 
 // Makes one island of two; returns its root, the smaller slot.
 uint32_t join(WorldData& world, uint32_t a, uint32_t b) {
-    Array<uint32_t>& parent = world.island_parent;
+    Array<uint32_t>& parent = world.load_parent;
     a = root(parent, a);
     b = root(parent, b);
     if (a == b) return a;
@@ -159,7 +159,7 @@ void add_joint_groups(WorldData& world, float dt) {
             loads[list[i].slot].in_group = true;
             join(world, list[0].slot, list[i].slot);
         }
-        IslandLoad& l = loads[root(world.island_parent, list[0].slot)];
+        IslandLoad& l = loads[root(world.load_parent, list[0].slot)];
         l.contacts += g.joints;
         l.sinking = maximum(l.sinking, 0.5f * sharper * g.sinking);
         l.certain = true;
@@ -173,7 +173,7 @@ void tie_other_joints(WorldData& world) {
     if (world.active.empty() && world.joint_groups.empty()) return;
     auto mark = [&](uint32_t slot, uint32_t other) {
         if (!has_entry(world, slot)) return;
-        loads[root(world.island_parent, slot)].tied |=
+        loads[root(world.load_parent, slot)].tied |=
             !loads[slot].in_group || (world.bodies.info[other].type == BodyType::kinematic && moves(world, other));
     };
     for (uint32_t joint : world.movers.joints) {
@@ -187,7 +187,7 @@ void tie_other_joints(WorldData& world) {
 void choose_substeps(WorldData& world, float dt) {
     Array<IslandLoad>& loads = world.island_loads;
     loads.resize(world.bodies.slots.capacity());
-    world.island_parent.resize_unset(loads.size());
+    world.load_parent.resize_unset(loads.size());
     world.loaded.reserve(loads.size());
     const float gravity = length(world.config.gravity);
     const float weight = gravity * dt / static_cast<float>(world.config.solver_steps);
@@ -205,7 +205,7 @@ void choose_substeps(WorldData& world, float dt) {
         world.active_bodies.push_back(bodies);
         const ContactRecord& r = world.records[i];
         const bool both = !bodies.fixed_a && takes_part(world, a);
-        IslandLoad& island = loads[both ? join(world, a, b) : root(world.island_parent, b)];
+        IslandLoad& island = loads[both ? join(world, a, b) : root(world.load_parent, b)];
         ++island.contacts;
         island.tied |= !both && world.bodies.info[a].type == BodyType::kinematic && moves(world, a);
         if (impulse_of(r) > 0.0f) count_load(world, island, r, bodies, both, weight);
@@ -215,7 +215,7 @@ void choose_substeps(WorldData& world, float dt) {
     if (!world.first_loads.empty()) {
         guess_first_loads(world, weight);
         for (const FirstLoad& f : world.first_loads) {
-            IslandLoad& island = loads[root(world.island_parent, f.bodies.b)];
+            IslandLoad& island = loads[root(world.load_parent, f.bodies.b)];
             count_load(world, island, world.records[f.record], f.bodies, f.lower != no_slot, weight, first_reserve);
             island.certain = true;
         }
@@ -223,7 +223,7 @@ void choose_substeps(WorldData& world, float dt) {
     add_joint_groups(world, dt);
     tie_other_joints(world);
     for (uint32_t slot : world.loaded) {
-        IslandLoad& l = loads[root(world.island_parent, slot)];
+        IslandLoad& l = loads[root(world.load_parent, slot)];
         if (!l.decided) decide(l, gravity, dt, world.config.solver_steps);
     }
 }
@@ -231,7 +231,7 @@ void choose_substeps(WorldData& world, float dt) {
 int substep_class(WorldData& world, uint32_t slot) {
     if (slot >= world.island_loads.size() || !has_entry(world, slot)) return 0;
     IslandLoad& l = world.island_loads[slot];
-    const IslandLoad& island = world.island_loads[root(world.island_parent, slot)];
+    const IslandLoad& island = world.island_loads[root(world.load_parent, slot)];
     l.substeps = island.substeps;
     l.waited = island.waited;
     l.urged = island.urged;

@@ -102,6 +102,7 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       awake(&memory),
       solver_bodies(&memory),
       island_loads(&memory),
+      load_parent(&memory),
       loaded(&memory),
       first_loads(&memory),
       parts{},
@@ -160,6 +161,33 @@ int World::contact_count() const { return data_->touching.count() + data_->resti
 BodyId World::body_of(ColliderId id) const {
     return data_->colliders.alive(id) ? data_->bodies.id(data_->colliders.info[id.index].body) : BodyId{};
 }
+std::vector<int> World::contact_colours() const {
+    const WorldData& world = *data_;
+    std::vector<int> by_record(world.records.size(), -1);
+    // Parts with other numbers of substeps are solved one after the other, each with colours of its own.
+    int first = 0;
+    for (const Solver& solver : world.solvers) {
+        solver.for_each_coloured([&](uint32_t record, int colour) {
+            if (record < by_record.size()) by_record[record] = first + colour;
+        });
+        first += solver.colour_count();
+    }
+    std::vector<int> colours;
+    for (uint32_t record : world.touching) colours.push_back(by_record[record]);
+    colours.resize(static_cast<size_t>(contact_count()), -1);
+    return colours;
+}
+
+int64_t World::island(BodyId id) const {
+    const WorldData& world = *data_;
+    if (!alive(id)) return -1;
+    const BodyInfo& info = world.bodies.info[id.index];
+    uint32_t slot = id.index;
+    if (info.type != BodyType::dynamic || info.asleep || slot >= world.island_parent.size()) return -1;
+    while (world.island_parent[slot] < slot) slot = world.island_parent[slot];  // the smaller slot leads
+    return slot;
+}
+
 std::span<const Overlap> World::overlaps() const { return {data_->overlaps.data(), data_->overlaps.size()}; }
 std::span<const std::string> World::warnings() const { return data_->warnings; }
 

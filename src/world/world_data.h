@@ -40,7 +40,7 @@ struct NarrowScratch {
 // Islands take 1, 2, 4, 8 or 16 times the substeps of the setting.
 inline constexpr int substep_classes = 5;
 
-// What a body's island carries, see substeps.cpp; sums are with the root of WorldData::island_parent.
+// What a body's island carries, see substeps.cpp; sums are with the root of WorldData::load_parent.
 struct alignas(64) IslandLoad {
     uint64_t step = 0;  // one more than the steps before the one that this entry is of
     int contacts = 0;
@@ -146,8 +146,8 @@ struct WorldData {
     bool has_extras = false;        // some material resists rolling or spinning or has tangential restitution
     Array<uint16_t> deep_contacts;  // by solver body: room for limit_recovery()
     Array<uint32_t> eased;          // records whose overlap is so deep that it may be undone more slowly than is set
-    Array<uint32_t> touching;                   // records with points of listed pairs, in order
-    Array<TouchingBodies> touching_bodies;      // ... and their bodies, within a step
+    Array<uint32_t> touching;       // records with points of listed pairs, in order
+    Array<TouchingBodies> touching_bodies;  // ... and their bodies, within a step
     Array<uint32_t> active;  // those of them that are solved, by class of substeps: at least one body awake
     Array<TouchingBodies> active_bodies;  // in the order of `touching`
     Array<uint32_t> unsorted;
@@ -174,6 +174,7 @@ struct WorldData {
     Array<uint32_t> awake;  // slots, by class of substeps and then in order of slots
     SolverBodies solver_bodies;
     Array<IslandLoad> island_loads;  // by body slot
+    Array<uint32_t> load_parent;     // union-find over body slots
     Array<uint32_t> loaded;          // slots of those of this step: bodies in contact and those of joint groups
     size_t touched = 0;              // how many of them, in front, are in contact
     Array<FirstLoad> first_loads;    // of this step

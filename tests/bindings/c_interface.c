@@ -11,6 +11,9 @@ const char* test_bodies_and_figures(void);
 const char* test_shapes(void);
 const char* test_picking_and_pulling(void);
 const char* test_snapshots(void);
+const char* test_building(void);
+const char* test_forks_and_settings(void);
+const char* test_structures(void);
 const char* test_refusals(void);
 
 #define TEXT(x) #x
@@ -183,6 +186,134 @@ const char* test_snapshots(void) {
     EXPECT(run(world, 30) && lendulet_hash(world) == later);
     EXPECT(lendulet_restore(world, kept, (size_t)size - 1) < 0 && strstr(lendulet_error(), "bytes") != NULL);
     EXPECT(lendulet_hash(world) == later && lendulet_read_bodies(world, &bodies) > 5);
+    lendulet_destroy(world);
+    return NULL;
+}
+
+static lendulet_part part_of(int type, float a, float b, float c) {
+    lendulet_part part;
+    memset(&part, 0, sizeof part);
+    part.type = type;
+    part.mesh = -1;
+    part.size[0] = a, part.size[1] = b, part.size[2] = c;
+    part.orientation[3] = 1.0f;
+    part.density = 500.0f;
+    part.friction = part.restitution = -1.0f;
+    return part;
+}
+static lendulet_body_definition body_at(int type, float x, float y) {
+    lendulet_body_definition body;
+    memset(&body, 0, sizeof body);
+    body.position[0] = x, body.position[1] = y;
+    body.orientation[3] = 1.0f;
+    body.gravity_factor = 1.0f;
+    body.type = type;
+    strcpy(body.name, "built");
+    return body;
+}
+
+/* A dumb-bell with a hull on a hinge, over a mesh. */
+const char* test_building(void) {
+    const float corners[12] = {-5, 0, -5, 5, 0, -5, 5, 0, 5, -5, 0, 5};
+    const uint32_t triangles[6] = {0, 2, 1, 0, 3, 2};
+    const float points[12] = {0, 0, 0, 0.4f, 0, 0, 0, 0.4f, 0, 0, 0, 0.4f};
+    lendulet_body ground, frame, bell;
+    lendulet_body_state state;
+    lendulet_body_definition definition;
+    lendulet_part parts[3], part;
+    lendulet_joint_definition joint;
+    const lendulet_joint_state* joints;
+    lendulet_world* world = lendulet_create_world(9.81f);
+    int hull, mesh;
+    EXPECT(world != NULL);
+    hull = lendulet_add_hull(world, points, 4, 0.0f);
+    mesh = lendulet_add_mesh(world, corners, 4, triangles, 2);
+    EXPECT(hull >= 0 && mesh > hull && lendulet_add_hull(world, points, 3, 0.0f) < 0);
+    part = part_of(LENDULET_MESH, 0, 0, 0);
+    part.mesh = mesh;
+    definition = body_at(LENDULET_FIXED, 0, 0);
+    EXPECT(lendulet_add_body(world, &definition, &part, 1, &ground) == 0);
+    part.mesh = hull; /* a hull is no mesh */
+    EXPECT(lendulet_add_body(world, &definition, &part, 1, NULL) < 0);
+    part = part_of(LENDULET_BOX, 0.1f, 0.1f, 0.1f);
+    definition = body_at(LENDULET_FIXED, 0, 3);
+    EXPECT(lendulet_add_body(world, &definition, &part, 1, &frame) == 0);
+    EXPECT(lendulet_add_body(world, &definition, &part, 0, NULL) < 0);
+    parts[0] = part_of(LENDULET_SPHERE, 0.2f, 0, 0);
+    parts[1] = part_of(LENDULET_CAPSULE, 0.5f, 0.05f, 0);
+    parts[2] = part_of(LENDULET_HULL, 0, 0, 0);
+    parts[2].mesh = hull;
+    parts[2].position[1] = -0.6f;
+    definition = body_at(LENDULET_DYNAMIC, 1, 3);
+    EXPECT(lendulet_add_body(world, &definition, parts, 3, &bell) == 0);
+    EXPECT(lendulet_read_body(world, bell, &state) == 0 && state.mass > 10.0f && strcmp(state.name, "built") == 0);
+    memset(&joint, 0, sizeof joint);
+    joint.body_a = frame, joint.body_b = bell, joint.type = LENDULET_HINGE;
+    joint.orientation_a[1] = joint.orientation_b[1] = -0.70710678f; /* x onto z */
+    joint.orientation_a[3] = joint.orientation_b[3] = 0.70710678f;
+    joint.position_b[0] = -1.0f;
+    joint.limit[0] = 1.0f, joint.limit[1] = -1.0f;
+    joint.swing = 4.0f, joint.twist[0] = 1.0f, joint.twist[1] = -1.0f;
+    EXPECT(lendulet_add_joint(world, &joint) == 0);
+    joint.type = 9;
+    EXPECT(lendulet_add_joint(world, &joint) < 0);
+    EXPECT(run(world, 120));
+    EXPECT(lendulet_read_joints(world, &joints) == 1 && joints[0].type == LENDULET_HINGE);
+    EXPECT(joints[0].body_a == 1 && joints[0].body_b == 2 && fabsf(joints[0].position[1] - 3.0f) < 1e-5f);
+    EXPECT(fabsf(joints[0].position_b[0]) < 0.01f && fabsf(joints[0].position_b[1] - 3.0f) < 0.01f);
+    lendulet_destroy(world);
+    return NULL;
+}
+
+const char* test_forks_and_settings(void) {
+    const float up[3] = {0.0f, 9.0f, 0.0f};
+    lendulet_settings settings, read;
+    lendulet_world *world = lendulet_create_scene("stack:6"), *fork;
+    EXPECT(world != NULL && run(world, 10));
+    fork = lendulet_fork(world);
+    EXPECT(fork != NULL && lendulet_hash(fork) == lendulet_hash(world));
+    EXPECT(run(world, 20) && run(fork, 20) && lendulet_hash(fork) == lendulet_hash(world));
+    EXPECT(lendulet_add_sphere(fork, 0.4f, up, at_rest, 300.0f, NULL) == 0);
+    EXPECT(run(world, 5) && run(fork, 5) && lendulet_hash(fork) != lendulet_hash(world));
+    lendulet_destroy(fork);
+    EXPECT(lendulet_fork(NULL) == NULL);
+
+    EXPECT(lendulet_read_settings(world, &settings) == 0 && settings.solver_steps == 8 &&
+           settings.gravity[1] == -10.0f);
+    settings.solver_steps = 3, settings.gravity[1] = 2.0f, settings.step_size = 0.01f, settings.broad_phase = 1;
+    EXPECT(lendulet_set_settings(world, &settings) == 0 && lendulet_read_settings(world, &read) == 0);
+    EXPECT(memcmp(&settings, &read, sizeof read) == 0 && lendulet_step_size(world) == 0.01f);
+    EXPECT(run(world, 100));
+    settings.solver_steps = 100;
+    EXPECT(lendulet_set_settings(world, &settings) < 0 && strstr(lendulet_error(), "64") != NULL);
+    settings.solver_steps = 4, settings.integrator = 17;
+    EXPECT(lendulet_set_settings(world, &settings) < 0);
+    settings.integrator = 0, settings.step_size = 0.0f;
+    EXPECT(lendulet_set_settings(world, &settings) < 0 && lendulet_step_size(world) == 0.01f);
+    EXPECT(strcmp(lendulet_choice_name(LENDULET_BROAD_PHASES, 0), "all-pairs") == 0);
+    EXPECT(lendulet_choice_name(LENDULET_INTEGRATORS, 4) == NULL && lendulet_choice_name(7, 0) == NULL);
+    lendulet_destroy(world);
+    return NULL;
+}
+
+const char* test_structures(void) {
+    const lendulet_box* boxes;
+    const lendulet_group* groups;
+    const lendulet_motion* motions;
+    int i, count, leaves = 0, nodes = 0, moving = 0, coloured = 0;
+    lendulet_world* world = lendulet_create_scene("box_pile:60");
+    EXPECT(world != NULL && run(world, 60));
+    count = lendulet_read_boxes(world, &boxes);
+    for (i = 0; i < count; ++i) {
+        leaves += boxes[i].leaf == 1, nodes += boxes[i].leaf == 0;
+        EXPECT(boxes[i].lower[0] <= boxes[i].upper[0] && boxes[i].depth >= 0);
+    }
+    EXPECT(leaves == 65 && nodes > 0);
+    EXPECT(lendulet_read_groups(world, &groups) == 65 && groups[0].island == -1);
+    for (i = 0; i < 65; ++i) moving += groups[i].island >= 0, coloured += groups[i].colour >= 0;
+    EXPECT(moving > 30 && coloured > 30);
+    EXPECT(lendulet_read_motions(world, &motions) == 65 && motions[0].mass == 0.0f);
+    EXPECT(motions[64].mass > 50.0f && motions[64].momentum[1] != 0.0f && motions[64].reach > 0.5f);
     lendulet_destroy(world);
     return NULL;
 }

@@ -10,6 +10,9 @@ const char* test_bodies_and_figures(void);
 const char* test_shapes(void);
 const char* test_picking_and_pulling(void);
 const char* test_snapshots(void);
+const char* test_building(void);
+const char* test_forks_and_settings(void);
+const char* test_structures(void);
 const char* test_refusals(void);
 }
 
@@ -23,6 +26,9 @@ TEST(CInterface, ReadsAndWritesBodies) { passes(test_bodies_and_figures()); }
 TEST(CInterface, DescribesShapes) { passes(test_shapes()); }
 TEST(CInterface, PicksAndPulls) { passes(test_picking_and_pulling()); }
 TEST(CInterface, SavesAndRestores) { passes(test_snapshots()); }
+TEST(CInterface, BuildsBodiesAndJoints) { passes(test_building()); }
+TEST(CInterface, ForksAndTunes) { passes(test_forks_and_settings()); }
+TEST(CInterface, ShowsItsStructures) { passes(test_structures()); }
 TEST(CInterface, RefusesWithASentence) { passes(test_refusals()); }
 
 TEST(CInterface, ComputesWhatTheCppInterfaceDoes) {

@@ -60,7 +60,9 @@ TEST_P(Determinism, EverySteppedWorldHashesDifferently) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Determinism,
                          testing::Values("box_pile:200", "mixed_pile:200", "ragdolls:4", "mesh_terrain:60",
                                          "height_field:60", "tumbler:4", "newtons_cradle", "stack:50",
-                                         "mass_ratio:1000"),
+                                         "mass_ratio:1000", "domino_spiral:20", "brick_tower:4", "arch:9",
+                                         "card_house:2", "ragdoll_avalanche:4", "bridge:12", "car", "gear_train:3",
+                                         "walker", "hourglass:60", "marble_machine:12", "t_handle"),
                          [](const testing::TestParamInfo<const char*>& info) {
                              std::string name = info.param;
                              for (char& c : name)

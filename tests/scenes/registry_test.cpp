@@ -112,7 +112,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Count{"many_things:3", 28, 0}, Count{"two_spheres", 2, 0}, Count{"sphere_and_box", 2, 0},
                     Count{"two_boxes", 2, 0}, Count{"wrecking_ball:3", 46, 0}, Count{"carpet_bomb:7", 98, 0},
                     Count{"spinning_ball:3", 10, 0}, Count{"rotating_board:3", 10, 0}, Count{"newtons_cradle", 6, 5},
-                    Count{"dzhanibekov", 1, 0}, Count{"dominoes:5", 6, 0}),
+                    Count{"dzhanibekov", 1, 0}, Count{"dominoes:5", 6, 0}, Count{"domino_spiral:9", 10, 0},
+                    Count{"brick_tower:3", 45, 1}, Count{"arch:7", 11, 0}, Count{"card_house:3", 16, 0},
+                    Count{"ragdoll_avalanche:2", 35, 20}, Count{"bridge:10", 27, 28}, Count{"car", 10, 8},
+                    Count{"gear_train:3", 8, 3}, Count{"walker", 75, 109}, Count{"hourglass:50", 53, 0},
+                    Count{"marble_machine:9", 15, 0}, Count{"t_handle", 3, 0}, Count{"ten_thousand_boxes", 10005, 0}),
     [](const testing::TestParamInfo<Count>& info) {
         std::string name = info.param.name;
         for (char& c : name)

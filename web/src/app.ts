@@ -1,19 +1,22 @@
 // The viewer as a whole: one world, its picture, and what can be done with both. The page's controls and the keyboard
 // (ui/controls.ts) call its methods.
 import * as THREE from "three";
-import { type BodyNumber, type Engine, Refused } from "./engine/engine";
 import { EngineStopped } from "./engine/wasi";
-import { Player } from "./player";
+import { type Command, Refused, type World } from "./engine/types";
+import { type Deed, Player } from "./player";
 import { Pointer, vector } from "./pointer";
 import { titleOf } from "./scenes";
+import type { Sources } from "./sources";
 import { element } from "./ui/dom";
 import { Figures } from "./ui/figures";
 import { Inspector } from "./ui/inspector";
 import { type Link, readLink, viewOf, writeLink } from "./ui/permalink";
 import { nameWithSize, SceneList } from "./ui/scene-list";
+import { Tuning } from "./ui/tuning";
 import { Bodies } from "./view/bodies";
 import { ContactMarks } from "./view/marks";
 import type { Stage } from "./view/stage";
+import { Structure } from "./view/structure";
 import { type Colouring, colourings, dark, light, type Theme } from "./view/theme";
 
 const firstScene = "mixed_pile:600";
@@ -23,27 +26,36 @@ export class App {
     readonly player: Player;
     readonly pointer: Pointer;
     readonly inspector = new Inspector();
+    readonly structure = new Structure();
     colours: Colouring = "body";
     contacts = false;
     theme: Theme = light;
     private readonly bodies = new Bodies();
+    private readonly twinBodies = new Bodies();
     private readonly marks = new ContactMarks();
     private readonly figures: Figures;
+    private readonly tuning: Tuning;
     private readonly list: SceneList;
-    private numbers: BigUint64Array = new BigUint64Array(); // of the bodies by index
+    private make: () => World | Promise<World> = () => { throw new Refused("nothing is open"); };
     private dirty = true;    // everything must be placed and painted anew
     private drawnStep = -1;  // state that was drawn last
     private drawnShare = 0;
     private lastFrame = performance.now();
     private lastFigures = 0;
     private lastLink = 0;
+    private openings = 0;
+    private slow = 0; // looks at the rate of frames that were too few, one after the other
 
-    constructor(private readonly engine: Engine, readonly stage: Stage) {
-        this.player = new Player(engine, (other) => this.rebuild(other));
-        this.pointer = new Pointer(stage, this.player, (body) => this.pick(body));
-        this.figures = new Figures(engine);
-        this.list = new SceneList(engine.scenes, (scene) => this.open(scene));
-        stage.scene.add(this.bodies.group, this.marks.group);
+    constructor(readonly sources: Sources, readonly stage: Stage) {
+        this.player = new Player((other) => this.rebuild(other), (sentence) => this.say(sentence));
+        this.player.stepped = (poses) => this.structure.remember(poses);
+        this.pointer = new Pointer(stage, this.player, this.bodies, (body) => this.pick(body),
+            (action) => this.guarded(action));
+        this.figures = new Figures(sources.stages);
+        this.tuning = new Tuning(sources.choices, (settings) => this.change({ do: "set", ...settings }));
+        this.list = new SceneList(sources.scenes, (scene) => this.open(scene));
+        stage.scene.add(this.bodies.group, this.twinBodies.group, this.marks.group, this.structure.group);
+        this.twinBodies.group.visible = false;
     }
 
     start(): void {
@@ -51,7 +63,9 @@ export class App {
         if (colourings.includes(link.colours as Colouring)) this.colours = link.colours as Colouring;
         this.setContacts(link.contacts ?? false);
         if (link.paused) this.player.playing = false;
-        if (!this.open(link.scene ?? firstScene, link)) this.open(firstScene);
+        const given = this.sources.given;
+        if (given && !link.scene) this.openWith(given.name, given.make, link);
+        else if (!this.open(link.scene ?? firstScene, link)) this.open(firstScene);
         window.addEventListener("hashchange", () => {
             const wanted = readLink();
             if (wanted.scene && wanted.scene !== this.player.sceneName) this.open(wanted.scene, wanted);
@@ -59,47 +73,62 @@ export class App {
         const frame = () => {
             if (this.stopped) return;
             requestAnimationFrame(frame);
-            this.guarded(() => this.frame());
+            if (this.player.world) this.guarded(() => this.frame());
         };
         requestAnimationFrame(frame);
     }
 
     // --- scenes
 
-    // False, with a message, where the engine refuses the name.
-    open(scene: string, link: Link = {}): boolean {
+    // False, with a message, where the engine in the page refuses the name.
+    open(scene: string, link: Link = {}, toDo: Deed[] = link.deeds ?? []): boolean {
+        return this.openWith(scene, () => this.sources.open(scene), link, toDo);
+    }
+    openWith(name: string, make: () => World | Promise<World>, link: Link = {}, toDo: Deed[] = []): boolean {
+        const opening = ++this.openings;
+        const taken = (world: World) => {
+            if (opening !== this.openings) return world.destroy();
+            this.make = make;
+            this.show(world, name, link, toDo);
+        };
         try {
-            this.pointer.release();
-            this.player.open(scene);
+            const made = make();
+            if (made instanceof Promise) made.then(taken, (error: Error) => this.say(error.message));
+            else taken(made);
         } catch (error) {
             if (!(error instanceof Refused)) throw error;
             this.say(error.message);
             return false;
         }
+        return true;
+    }
+    opened: () => void = () => undefined; // another world is shown
+    private show(world: World, scene: string, link: Link, toDo: Deed[]): void {
+        this.opened();
+        this.pointer.forget();
+        this.player.install(world, scene, toDo);
         this.pick(null);
         const [name, size] = scene.split(":");
-        const info = this.engine.scenes.find((s) => s.name === name);
-        element("scene-name").textContent = titleOf(name);
+        const info = this.sources.scenes.find((s) => s.name === name);
+        element("scene-name").textContent = info ? titleOf(name) : scene;
         element("scene-text").textContent = info?.description ?? "";
         element("size-label").hidden = !info?.size;
         element<HTMLInputElement>("size").value = size ?? String(info?.size ?? "");
-        document.title = `${titleOf(name)} – Lendület`;
+        document.title = `${element("scene-name").textContent} – Lendület`;
         this.list.mark(name);
+        this.tuning.show(world.settings());
         this.stage.update(); // the camera's shape before it is placed
+        this.lookAtAll();
         if (link.view) {
-            this.lookAtAll();
             this.stage.camera.position.fromArray(link.view);
             this.stage.controls.target.fromArray(link.view, 3);
             this.stage.controls.update();
-        } else {
-            this.lookAtAll();
         }
         this.writeLink();
-        return true;
     }
     setSize(size: number): void {
         const name = this.player.sceneName.split(":")[0];
-        const info = this.engine.scenes.find((s) => s.name === name);
+        const info = this.sources.scenes.find((s) => s.name === name);
         if (info) this.open(size >= 1 ? `${name}:${Math.round(size)}` : nameWithSize(info));
     }
     lookAtAll(): void {
@@ -108,9 +137,28 @@ export class App {
     }
 
     private rebuild(otherScene: boolean): void {
-        this.bodies.build(this.player.world, otherScene);
-        this.numbers = this.player.world.bodies().slice();
+        const shapes = this.player.world.shapes();
+        this.bodies.build(shapes, otherScene);
+        if (otherScene) this.structure.forget();
+        const { twin } = this.player;
+        if (twin && !this.twinBodies.group.visible) this.twinBodies.build(shapes, true);
+        this.twinBodies.group.visible = twin !== null;
+        if (twin) this.placeTwin();
+        element("futures").hidden = twin === null;
+        element("fork").setAttribute("aria-pressed", String(twin !== null));
         this.dirty = true;
+    }
+    // The other future stands beside this one.
+    private placeTwin(): void {
+        const box = this.bodies.measure(this.player.now), side = new THREE.Vector3();
+        this.stage.camera.getWorldDirection(side).cross(this.stage.camera.up).normalize();
+        side.multiplyScalar(1.15 * Math.max(box.max.x - box.min.x, box.max.z - box.min.z));
+        this.twinBodies.group.position.copy(side);
+        this.twinBodies.group.updateMatrixWorld(true);
+    }
+    toggleFork(): void {
+        if (this.player.twin) this.player.leaveTwin();
+        else this.player.fork();
     }
 
     // --- what is seen
@@ -135,7 +183,12 @@ export class App {
         this.dirty = true;
         if (this.player.world) this.writeLink();
     }
-    pick(body: BodyNumber | null): void {
+    setStructure(change: Partial<Pick<Structure, "boxes" | "joints" | "momenta" | "trails">>): void {
+        Object.assign(this.structure, change);
+        if (!this.structure.trails) this.structure.forget();
+        this.dirty = true;
+    }
+    pick(body: number | null): void {
         this.inspector.pick(body);
         if (body !== null) this.inspector.sample(this.player.world);
         this.dirty = true;
@@ -143,10 +196,21 @@ export class App {
 
     // --- what is done
 
+    change(command: Command): void {
+        this.guarded(() => this.player.change(command));
+    }
     restart(): void {
         this.pointer.release();
-        this.player.restart();
-        this.pick(null);
+        const opening = ++this.openings, made = this.make();
+        const taken = (world: World) => {
+            if (opening !== this.openings) return world.destroy();
+            this.pointer.forget();
+            this.player.install(world, this.player.sceneName);
+            this.tuning.show(world.settings());
+            this.pick(null);
+        };
+        if (made instanceof Promise) made.then(taken, (error: Error) => this.say(error.message));
+        else taken(made);
     }
     // A ball from the camera towards a point of the page.
     shoot(x: number, y: number): void {
@@ -154,18 +218,20 @@ export class App {
         const speed = Math.min(ballSpeed * span, 40), radius = Math.min(Math.max(span / 12, 0.05), 0.9);
         const from = ray.origin.clone().addScaledVector(ray.direction, Math.min(0.35 * span, 3));
         const velocity = ray.direction.clone().multiplyScalar(speed);
-        this.player.change((world) => world.addSphere(radius, vector(from), vector(velocity), 600));
+        this.player.change({ do: "sphere", radius, at: vector(from), velocity: vector(velocity), density: 600 });
         if (!this.player.playing) this.say("The ball is there: press play to see it fly.");
     }
     // A box above what lies under a point of the page.
     drop(x: number, y: number): void {
         const span = this.stage.span, half = Math.min(Math.max(span / 16, 0.05), 0.6);
-        const hit = this.player.change(() => this.pointer.hit(x, y));
         const { camera, controls } = this.stage, above = new THREE.Vector3();
+        this.player.resume();
+        const hit = this.pointer.hit(x, y);
         if (hit) above.set(...hit.point);
         else this.stage.ray(x, y).at(camera.position.distanceTo(controls.target), above);
         above.y += 6 * half;
-        this.player.change((world) => world.addBox([half, half, half], vector(above), [0, 0, 0], 300));
+        const at = vector(above);
+        this.player.change({ do: "box", half: [half, half, half], at, velocity: [0, 0, 0], density: 300 });
     }
 
     say(sentence: string): void {
@@ -207,8 +273,11 @@ export class App {
         if (now - this.lastFigures > 200) {
             this.lastFigures = now;
             this.figures.show(this.player);
+            this.tuning.follow(this.player.world.settings());
             if (!this.inspector.show(this.player.world)) this.pick(null);
             this.showTime();
+            this.slow = this.figures.rate > 0 && this.figures.rate < 24 ? this.slow + 1 : 0;
+            if (this.slow > 10) this.stage.dropOcclusion();
         }
         if (now - this.lastLink > 1000) {
             this.lastLink = now;
@@ -217,37 +286,45 @@ export class App {
     }
 
     private draw(): void {
-        const { before, now, share } = this.player.picture;
-        const moment = this.player.moment, step = moment ? -2 - moment.step : this.player.world.stepCount;
-        const fresh = this.dirty || step !== this.drawnStep;
+        const { world, moment, twin } = this.player, { before, now, share } = this.player.picture;
+        const step = moment ? -2 - moment.step : world.stepCount;
+        // Lists of a stream come a little later than what they are drawn with.
+        const late = world.kind === "native" && (this.structure.any || this.contacts || this.colours === "island");
+        const fresh = this.dirty || step !== this.drawnStep || late;
         const moved = this.stage.update();
         // What stands still is not drawn again.
         if (!fresh && !moved && share === this.drawnShare && !this.pointer.active) return;
         this.drawnShare = share;
         this.bodies.place(before, now, share, this.dirty);
-        if (fresh) {
-            if (this.dirty || this.colours !== "body")
-                this.bodies.paint(this.colours, now, this.selected(), this.theme.ground);
-            this.stage.light(this.bodies.measure(now));
-            this.marks.group.visible = this.contacts && !moment;
-            if (this.marks.group.visible) this.marks.show(this.player.world.contacts(), this.stage.span);
-            if (!moment) this.inspector.sample(this.player.world);
-        }
+        if (twin) this.twinBodies.place(this.player.twinNow, this.player.twinNow, 1, this.dirty);
+        if (fresh) this.drawFresh(now, moment !== null);
         this.drawnStep = step;
         this.dirty = false;
         this.pointer.draw();
         this.stage.render();
     }
-    private selected(): number {
-        return this.inspector.body === null ? -1 : this.numbers.indexOf(this.inspector.body);
+    private drawFresh(now: Float32Array, past: boolean): void {
+        const { world, twin } = this.player, grouped = this.colours === "island" || this.colours === "colour";
+        if (this.dirty || this.colours !== "body") {
+            const groups = grouped && !past ? world.groups() : new Int32Array();
+            this.bodies.paint(this.colours, now, groups, this.inspector.body ?? -1, this.theme.ground);
+            if (twin) this.twinBodies.paint("body", this.player.twinNow, groups, -1, this.theme.ground);
+        }
+        this.stage.light(this.bodies.measure(now));
+        this.marks.group.visible = this.contacts && !past;
+        if (this.marks.group.visible) this.marks.show(world.contacts(), this.stage.span);
+        this.structure.group.visible = !past;
+        if (!past) {
+            this.structure.show(world, this.stage.span);
+            this.inspector.sample(world);
+        }
     }
 
     private showTime(): void {
-        const { history, moment } = this.player;
+        const { moment, timeline: [last, at] } = this.player;
         const timeline = element<HTMLInputElement>("timeline");
-        const last = Math.max(history.moments.length - 1, 0);
         timeline.max = String(last);
-        if (!moment) timeline.value = String(last);
+        timeline.value = String(at);
         const time = moment ? moment.time : this.player.world.time;
         element("clock").textContent = `${time.toFixed(2)} s`;
         timeline.setAttribute("aria-valuetext", `${time.toFixed(2)} seconds`);
@@ -258,7 +335,7 @@ export class App {
     private writeLink(): void {
         writeLink({
             scene: this.player.sceneName, colours: this.colours, contacts: this.contacts,
-            view: viewOf(this.stage.camera, this.stage.controls),
+            view: viewOf(this.stage.camera, this.stage.controls), deeds: this.player.deeds,
         });
     }
 }

@@ -1,10 +1,11 @@
-// The past of a run: a snapshot and the poses every few steps, within a budget of memory. Where the budget is used up
+// The past of a run: a kept state and the poses every few steps, within a budget of memory. Where the budget is used up
 // every second one is forgotten and the distance between them doubles.
+import type { Kept } from "./engine/types";
 
 export interface Moment {
     step: number;
     time: number; // s
-    snapshot: Uint8Array;
+    kept: Kept;
     poses: Float32Array;
 }
 
@@ -13,7 +14,10 @@ export class History {
     private every: number;
     private bytes = 0;
 
-    constructor(private readonly budget: number, private readonly firstEvery = 5) {
+    constructor(
+        private readonly budget: number, private readonly forget: (kept: Kept[]) => void,
+        private readonly firstEvery = 5,
+    ) {
         this.every = firstEvery;
     }
 
@@ -32,8 +36,11 @@ export class History {
 
     // Forgets what came after the moment of this index: the run goes on from there.
     cut(index: number): void {
-        for (const moment of this.moments.splice(index + 1)) this.bytes -= sizeOf(moment);
+        const gone = this.moments.splice(index + 1);
+        for (const moment of gone) this.bytes -= sizeOf(moment);
+        this.forget(gone.map((m) => m.kept));
     }
+    // Everything, of a world that is no more.
     clear(): void {
         this.moments.length = 0;
         this.bytes = 0;
@@ -42,12 +49,14 @@ export class History {
 
     private thin(): void {
         this.every *= 2;
-        const kept = this.moments.filter((m, i) => m.step % this.every === 0 || i === this.moments.length - 1);
-        this.moments.splice(0, this.moments.length, ...kept);
+        const last = this.moments.length - 1;
+        const stays = this.moments.map((m, i) => m.step % this.every === 0 || i === last);
+        this.forget(this.moments.filter((_, i) => !stays[i]).map((m) => m.kept));
+        this.moments.splice(0, this.moments.length, ...this.moments.filter((_, i) => stays[i]));
         this.bytes = this.moments.reduce((sum, m) => sum + sizeOf(m), 0);
     }
 }
 
 function sizeOf(moment: Moment): number {
-    return moment.snapshot.byteLength + moment.poses.byteLength;
+    return moment.kept.bytes + moment.poses.byteLength;
 }

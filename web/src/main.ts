@@ -1,6 +1,8 @@
-// Loads the engine and starts the viewer. `?shadows=0` leaves shadows out, for machines that draw in software.
+// Loads the engine, finds out what this page is to show, and starts the viewer. `?shadows=0` leaves shadows out, `?ao=0`
+// ambient occlusion, for machines that draw in software.
 import { App } from "./app";
 import { Engine } from "./engine/engine";
+import { Sources } from "./sources";
 import { connect } from "./ui/controls";
 import { element } from "./ui/dom";
 import { Stage } from "./view/stage";
@@ -11,14 +13,22 @@ declare global {
     }
 }
 
-async function main(): Promise<void> {
+async function loadEngine(): Promise<Engine | null> {
+    if (!Sources.wantsEngine) return null;
     const answer = await fetch("lendulet.wasm");
     if (!answer.ok) throw new Error(`lendulet.wasm cannot be loaded (${answer.status})`);
-    const engine = await Engine.load(await answer.arrayBuffer());
-    const wanted = new URLSearchParams(location.search).get("shadows");
-    const stage = new Stage(element<HTMLCanvasElement>("canvas"), wanted === null ? 2048 : Number(wanted));
-    const app = new App(engine, stage);
+    return Engine.load(await answer.arrayBuffer());
+}
+
+async function main(): Promise<void> {
+    const sources = await Sources.find(await loadEngine());
+    const options = new URLSearchParams(location.search), shadows = Number(options.get("shadows") ?? 2048);
+    const occlusion = shadows > 0 && options.get("ao") !== "0";
+    const stage = new Stage(element<HTMLCanvasElement>("canvas"), shadows, occlusion);
+    const app = new App(sources, stage);
+    sources.lost = (sentence) => app.say(sentence);
     app.start();
+    while (!app.player.world) await new Promise((done) => setTimeout(done, 10));
     connect(app);
     element("loading").hidden = true;
     window.lendulet = app;

@@ -1,48 +1,69 @@
-// Runs a world: steps at the pace of the clock, keeps the last two states for drawing between them, and the past.
-import { type Engine, poseStride, type World } from "./engine/engine";
+// Runs a world: asks for steps at the pace of the clock, keeps the last two states for drawing between them, the past,
+// and what was done by hand. A fork runs beside it, step for step.
+import { type Command, poseStride, type World } from "./engine/types";
 import { History, type Moment } from "./history";
 
 const historyBudget = 96 * 1024 * 1024; // bytes
 const frameBudget = 22;                 // ms of steps in a frame; what is left over is lost: the picture slows down
+const mostSteps = 4;                    // of one question to a stream
+
+// Something that was done by hand, before the step of this number.
+export interface Deed {
+    step: number;
+    command: Command;
+}
 
 export class Player {
     world!: World;
+    twin: World | null = null;
     sceneName = "";
     playing = true;
     timeScale = 1;
     before = new Float32Array(); // poses of the step before
     now = new Float32Array();
+    twinNow = new Float32Array();
     share = 1;       // how far the picture is between the two
     stepTime = 0;    // ms a step took, smoothed
-    touched = false; // something was changed by hand since the start: the run is no longer the scene's own
-    readonly history = new History(historyBudget);
+    deeds: Deed[] = [];
+    stepped: (poses: Float32Array) => void = () => undefined; // after every step
+    readonly history = new History(historyBudget, (kept) => this.world.forget(kept));
     private left = 0; // s not yet stepped
     private shown: number | null = null;
+    private asked = 0; // when the last steps were asked for, ms
+    private toDo: Deed[] = []; // of a repro file, in order of steps
 
-    // `changed`: bodies came or went, or all are those of another scene.
-    constructor(private readonly engine: Engine, private readonly changed: (otherScene: boolean) => void) {}
+    // `changed`: bodies came or went, or all are those of another scene; `refused`: a sentence.
+    constructor(
+        private readonly changed: (otherScene: boolean) => void,
+        private readonly refused: (sentence: string) => void,
+    ) {}
 
-    // Throws Refused, and leaves the world that there is, where the engine knows no such scene.
-    open(scene: string): void {
-        const world = this.engine.create(scene);
+    // The world is the player's from now on. `toDo`: what is to be done in it, as it was once done by hand.
+    install(world: World, sceneName: string, toDo: Deed[] = []): void {
+        this.leaveTwin();
         if (this.world) this.world.destroy();
         this.world = world;
-        this.sceneName = scene;
-        this.begin();
-    }
-    restart(): void {
-        this.open(this.sceneName);
-    }
-    private begin(): void {
+        this.sceneName = sceneName;
+        this.toDo = [...toDo];
+        this.deeds = [];
         this.history.clear();
         this.shown = null;
-        this.touched = false;
         this.left = 0;
         this.stepTime = 0;
+        world.arrived = (steps) => this.arrived(steps);
+        world.failed = (sentence) => {
+            this.playing = false;
+            this.refused(sentence);
+        };
+        this.now = new Float32Array();
         this.readPoses();
         this.before = this.now.slice();
         this.remember();
         this.changed(true);
+    }
+    // Whether the run is no longer the scene's own.
+    get touched(): boolean {
+        return this.deeds.length > 0;
     }
 
     // --- time
@@ -55,28 +76,48 @@ export class Player {
         }
         const dt = this.world.stepSize, start = performance.now();
         this.left += Math.min(seconds, 0.1) * this.timeScale;
-        while (this.left >= dt) {
-            this.left -= dt;
-            this.stepOnce();
-            if (performance.now() - start > frameBudget) this.left = Math.min(this.left, dt * 0.999);
+        if (this.world.kind === "native") {
+            if (this.world.busy) this.left = Math.min(this.left, mostSteps * dt);
+            else if (this.left >= dt) this.ask(Math.min(Math.floor(this.left / dt), mostSteps));
+        } else {
+            while (this.left >= dt && this.playing) {
+                this.ask(1);
+                if (performance.now() - start > frameBudget) this.left = Math.min(this.left, dt * 0.999);
+            }
         }
-        this.share = this.left / dt;
+        this.share = Math.min(this.left / dt, 1);
+        if (this.world.length !== undefined && this.world.stepCount >= this.world.length) this.playing = false;
     }
     // One step by hand; the clock stands.
     step(): void {
         this.resume();
         this.playing = false;
-        this.stepOnce();
+        this.left = this.world.stepSize;
+        this.ask(1);
         this.share = 1;
     }
-    private stepOnce(): void {
-        const start = performance.now();
-        this.world.step();
-        const took = performance.now() - start;
-        this.stepTime = this.stepTime === 0 ? took : 0.9 * this.stepTime + 0.1 * took;
-        this.before.set(this.now);
+    private ask(steps: number): void {
+        this.left -= steps * this.world.stepSize;
+        while (this.toDo.length > 0 && this.toDo[0].step <= this.world.stepCount)
+            this.perform(this.toDo.shift()!.command);
+        this.asked = performance.now();
+        this.twin?.run(steps);
+        this.world.run(steps);
+    }
+    private arrived(steps: number): void {
+        if (steps > 0) {
+            const took = (performance.now() - this.asked) / steps;
+            this.stepTime = this.stepTime === 0 ? took : 0.9 * this.stepTime + 0.1 * took;
+            this.before.set(this.now);
+        }
+        const count = this.now.length;
         this.readPoses();
-        this.remember();
+        if (steps === 0) this.before = this.now.slice();
+        else {
+            this.remember();
+            this.stepped(this.now);
+        }
+        if (this.now.length !== count) this.changed(false);
     }
     private readPoses(): void {
         const poses = this.world.poses();
@@ -92,21 +133,26 @@ export class Player {
     }
     private remember(): void {
         const step = this.world.stepCount;
-        if (!this.history.wants(step)) return;
-        this.history.add({
-            step, time: this.world.time, snapshot: this.world.snapshot().slice(), poses: this.now.slice(),
-        });
+        if (this.world.length !== undefined || !this.history.wants(step)) return;
+        this.history.add({ step, time: this.world.time, kept: this.world.keep(), poses: this.now.slice() });
     }
 
     // --- the past
 
-    // The moment that is looked at, or null: the present.
+    // The moment that is looked at, or null: the present. Recordings are there at once.
     get moment(): Moment | null {
         return this.shown === null ? null : this.history.moments[this.shown];
+    }
+    // How far the time line goes, and where we are on it.
+    get timeline(): [last: number, at: number] {
+        if (this.world.length !== undefined) return [this.world.length, this.world.stepCount];
+        const last = Math.max(this.history.moments.length - 1, 0);
+        return [last, this.shown ?? last];
     }
     // Shows a moment of the past without going there yet.
     look(index: number): void {
         this.playing = false;
+        if (this.world.seek) return this.world.seek(index);
         this.shown = index >= this.history.moments.length - 1 && this.atLast() ? null : index;
     }
     private atLast(): boolean {
@@ -116,31 +162,64 @@ export class Player {
     resume(): void {
         if (this.shown === null) return;
         const moment = this.history.moments[this.shown];
+        this.leaveTwin();
         this.history.cut(this.shown);
         this.shown = null;
         this.left = 0;
-        this.world.restore(moment.snapshot);
-        const bodies = this.now.length;
-        this.readPoses();
-        this.before = this.now.slice();
-        if (this.now.length !== bodies) this.changed(false);
+        this.deeds = this.deeds.filter((deed) => deed.step < moment.step);
+        // Where results depended on other settings then, these come first.
+        const { settings } = moment.kept;
+        if (settings && JSON.stringify(settings) !== JSON.stringify(this.world.settings()))
+            this.world.change({ do: "set", ...settings });
+        this.world.go(moment.kept);
     }
     play(on: boolean): void {
         if (on) this.resume();
+        if (on && this.world.length !== undefined && this.world.stepCount >= this.world.length) this.world.seek!(0);
         this.playing = on;
     }
 
     // --- changes by hand
 
-    // Runs an action that changes the world.
-    change<T>(action: (world: World) => T): T {
+    change(command: Command): void {
         this.resume();
-        const count = this.now.length;
-        const result = action(this.world);
-        this.touched = true;
-        this.readPoses();
-        if (this.now.length !== count) this.changed(false);
-        return result;
+        this.perform(command);
+    }
+    private perform(command: Command): void {
+        this.world.change(command);
+        this.deeds.push({ step: this.world.stepCount, command });
+    }
+
+    // --- two futures
+
+    // A second world from here on, left alone while this one is played with.
+    fork(): void {
+        this.resume();
+        this.leaveTwin();
+        this.twin = this.world.fork();
+        if (!this.twin) return this.refused("A recording has but one future.");
+        this.twin.failed = this.refused;
+        this.twinNow = this.now.slice();
+        this.twin.arrived = () => {
+            if (this.twin) this.twinNow = this.twin.poses().slice();
+        };
+        this.changed(false);
+    }
+    leaveTwin(): void {
+        if (!this.twin) return;
+        this.twin.arrived = () => undefined;
+        this.twin.destroy();
+        this.twin = null;
+        this.changed(false);
+    }
+    // The greatest distance between the same body in both, m.
+    get apart(): number {
+        let most = 0;
+        for (let at = 0; at + 2 < Math.min(this.now.length, this.twinNow.length); at += poseStride) {
+            const dx = this.now[at] - this.twinNow[at], dy = this.now[at + 1] - this.twinNow[at + 1];
+            most = Math.max(most, dx * dx + dy * dy + (this.now[at + 2] - this.twinNow[at + 2]) ** 2);
+        }
+        return Math.sqrt(most);
     }
 
     // Poses to draw, from the past or of the present.

@@ -1,8 +1,9 @@
 // The pointer on the scene: a click picks a body, a drag from a dynamic one pulls it, a drag from elsewhere turns the
 // camera. Lets go in motion throw the body.
 import * as THREE from "three";
-import { type BodyNumber, BodyType, type Vec3 } from "./engine/engine";
+import { type Hit, type Vec3 } from "./engine/types";
 import type { Player } from "./player";
+import type { Bodies } from "./view/bodies";
 import { GripLine } from "./view/marks";
 import type { Stage } from "./view/stage";
 
@@ -15,34 +16,39 @@ export class Pointer {
     private held: number | null = null; // pointer id
     private readonly target = new THREE.Vector3();
     private readonly plane = new THREE.Plane();
-    private down: { x: number; y: number; body: BodyNumber | null } | null = null;
+    private down: { x: number; y: number; body: number | null } | null = null;
 
     constructor(
         private readonly stage: Stage,
         private readonly player: Player,
-        private readonly pick: (body: BodyNumber | null) => void,
+        private readonly bodies: Bodies,
+        private readonly pick: (body: number | null) => void,
+        private readonly guarded: (action: () => void) => void,
     ) {
         const canvas = stage.canvas;
         stage.scene.add(this.grip.line);
         // Before the camera's own listeners, so that a drag of a body does not turn the camera.
         canvas.addEventListener("pointerdown", (event) => this.press(event), { capture: true });
-        canvas.addEventListener("pointermove", (event) => this.move(event));
-        canvas.addEventListener("pointerup", (event) => this.lift(event));
-        canvas.addEventListener("pointercancel", () => this.release());
+        canvas.addEventListener("pointermove", (event) => this.guarded(() => this.move(event)));
+        canvas.addEventListener("pointerup", (event) => this.guarded(() => this.lift(event)));
+        canvas.addEventListener("pointercancel", () => this.guarded(() => this.release()));
     }
 
     // What the ray through a point of the page meets in the present.
-    hit(x: number, y: number): { body: BodyNumber; point: Vec3 } | null {
+    hit(x: number, y: number): Hit | null {
         const ray = this.stage.ray(x, y);
         const far = ray.direction.clone().multiplyScalar(this.stage.far);
-        return this.player.world.castRay(vector(ray.origin), vector(far));
+        const hit = this.player.world.castRay(vector(ray.origin), vector(far));
+        if (hit !== undefined) return hit;
+        const seen = this.bodies.hit(ray);
+        return seen && { body: seen.body, point: vector(seen.point) };
     }
 
     private press(event: PointerEvent): void {
         if (event.button !== 0 || this.held !== null || !event.isPrimary) return;
         const hit = this.player.moment ? null : this.hit(event.clientX, event.clientY);
         this.down = { x: event.clientX, y: event.clientY, body: hit?.body ?? null };
-        if (!hit || this.player.world.body(hit.body)?.type !== BodyType.dynamic) return;
+        if (!hit || !this.bodies.isDynamic(hit.body)) return;
         event.stopImmediatePropagation();
         this.stage.canvas.setPointerCapture(event.pointerId);
         this.held = event.pointerId;
@@ -55,14 +61,15 @@ export class Pointer {
         const far = Math.hypot(event.clientX - this.down.x, event.clientY - this.down.y) > clickReach;
         if (!this.grabbing) {
             if (!far || this.down.body === null) return;
-            const body = this.down.body, point = vector(this.target);
-            this.grabbing = this.player.change((world) => world.grab(body, point));
-            if (!this.grabbing) return;
+            const body = this.down.body;
+            this.player.change({ do: "grab", body, point: vector(this.target) });
+            this.grabbing = true;
             this.stage.canvas.classList.add("grabbing");
             this.pick(body);
         }
         const ray = this.stage.ray(event.clientX, event.clientY);
-        if (ray.intersectPlane(this.plane, this.target)) this.player.world.drag(vector(this.target));
+        if (ray.intersectPlane(this.plane, this.target))
+            this.player.change({ do: "drag", target: vector(this.target) });
     }
     private grabbing = false;
     // Whether the line of the grip is drawn, or was a moment ago.
@@ -75,7 +82,11 @@ export class Pointer {
         if (event.pointerId === this.held || this.held === null) this.release();
     }
     release(): void {
-        if (this.grabbing) this.player.world.release();
+        if (this.grabbing) this.player.change({ do: "release" });
+        this.forget();
+    }
+    // Without a word to the world, which may be another one by now.
+    forget(): void {
         this.grabbing = false;
         this.held = null;
         this.down = null;

@@ -1,11 +1,15 @@
 // Tests of the page in a real browser: node test/run.mjs FOLDER [IMAGES [WORDS]]
 // FOLDER: the built page. IMAGES: where pictures are written to; "-" or none: they are only looked at.
 // WORDS: only checks whose names contain them.
-// CHROMIUM in the environment names another browser than /usr/bin/chromium.
+// CHROMIUM in the environment names another browser than /usr/bin/chromium, LENDULET another program than
+// build/release/bin/lendulet.
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 import { checks } from "./checks.mjs";
+import { fileChecks } from "./files.mjs";
+import { nativeChecks } from "./native.mjs";
 import { serve } from "./server.mjs";
 
 const [folder, into = "-", words = ""] = process.argv.slice(2);
@@ -25,22 +29,23 @@ if (images) mkdirSync(images, { recursive: true });
 
 const problems = [];
 // A page in which every error and every request that leaves the machine is a failure.
-async function open(options = {}, address = "?shadows=0") {
+async function open(options = {}, address = "?shadows=0", url = server.url) {
     const context = await browser.newContext({ viewport: { width: 640, height: 400 }, ...options });
     const page = await context.newPage();
     page.on("pageerror", (error) => problems.push(`error in the page: ${error.message}`));
     page.on("console", (entry) => entry.type() === "error" && problems.push(`the page says: ${entry.text()}`));
     page.on("request", (request) => {
-        if (!/^(http:\/\/127\.0\.0\.1:|data:|blob:)/.test(request.url())) problems.push(`asks for ${request.url()}`);
+        if (!/^(http:\/\/(127\.0\.0\.1|localhost):|ws:\/\/localhost:|data:|blob:)/.test(request.url())) problems.push(`asks for ${request.url()}`);
     });
-    await page.goto(server.url + address);
+    await page.goto(url + address);
     await page.waitForFunction(() => window.lendulet !== undefined, null, { polling: 100, timeout: 90000 });
     return page;
 }
 
-const tools = { open, native, save: (name, bytes) => images && writeFileSync(join(images, name), bytes) };
+const program = process.env.LENDULET ?? fileURLToPath(new URL("../../build/release/bin/lendulet", import.meta.url));
+const tools = { open, native, program, folder: resolve(folder), save: (name, bytes) => images && writeFileSync(join(images, name), bytes) };
 let failed = 0;
-const chosen = Object.entries(checks).filter(([name]) => name.includes(words));
+const chosen = Object.entries({ ...checks, ...fileChecks, ...nativeChecks }).filter(([name]) => name.includes(words));
 for (const [name, check] of chosen) {
     const start = Date.now();
     const took = () => `${((Date.now() - start) / 1000).toFixed(1).padStart(5)} s  ${name}`;

@@ -128,6 +128,28 @@ JointId World::joint_id(int index) const {
     return data_->joints.id(data_->joints.slots.in_order(index));
 }
 
+JointDef World::joint_def(JointId id) const {
+    if (!alive(id)) detail::fail(no_such(data_->joints.slots, id.generation, "joint_def", "joint"));
+    const WorldData& world = *data_;
+    const JointInfo& j = world.joints.info[id.index];
+    JointDef def;
+    def.type = j.type;
+    def.body_a = world.bodies.id(j.body_a);
+    def.body_b = world.bodies.id(j.body_b);
+    def.frame_a = world.bodies.principal[j.body_a] * j.frame_a;
+    def.frame_b = world.bodies.principal[j.body_b] * j.frame_b;
+    def.limit = j.limit;
+    def.motor = j.motor;
+    def.spring = j.spring;
+    def.swing_limit = j.swing_limit;
+    def.twist_limit = j.twist_limit;
+    if (j.type == JointType::six_degrees) def.axes = coordinates_of(world.joints.axes[static_cast<size_t>(j.axes)]);
+    def.collide_connected = j.collide_connected;
+    def.user_data = j.user_data;
+    def.name = world.joints.name[id.index];
+    return def;
+}
+
 void remove_joints_of(WorldData& world, uint32_t body) {
     for (uint32_t slot = world.joints.first_of(body); slot != no_joint_link; slot = world.joints.first_of(body))
         remove_joint_at(world, slot);

@@ -9,6 +9,8 @@ namespace lendulet {
 // sliders that only a damper towards a velocity drives.
 bool rows_are_data(const JointInfo& j);
 JointAxesInfo rows_of(const JointDef& def);
+// The definition of a six-degree joint with these rows.
+SixDegrees coordinates_of(const JointAxesInfo& rows);
 // The row of the coordinate that a hinge, slider or distance joint has.
 int driven_row(JointType type);
 

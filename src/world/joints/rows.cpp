@@ -65,6 +65,19 @@ int driven_row(JointType type) {
                                        : driven_distance;
 }
 
+SixDegrees coordinates_of(const JointAxesInfo& rows) {
+    SixDegrees axes;
+    for (int i = 0; i < 3; ++i) {
+        axes.linear[i] = rows.row[i];
+        axes.angular[i] = rows.row[3 + i];
+        axes.distance_axes[i] = (rows.distance_axes >> i & 1) != 0;
+        axes.swing_axes[i] = (rows.swing_axes >> i & 1) != 0;
+    }
+    axes.distance = rows.row[distance_row];
+    axes.swing = rows.row[swing_row];
+    return axes;
+}
+
 JointAxesInfo rows_of(const JointDef& def) {
     JointAxesInfo rows;
     if (def.type == JointType::six_degrees) {

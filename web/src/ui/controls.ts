@@ -1,7 +1,9 @@
 // The page's buttons, fields and keys. Each control has one action; keys do what the controls do.
 import type { App } from "../app";
 import { type Colouring, colourings, dark, light } from "../view/theme";
+import { type BoxView } from "../view/structure";
 import { element } from "./dom";
+import { Files } from "./files";
 
 export function connect(app: App): void {
     const button = (id: string, action: () => void) =>
@@ -42,6 +44,7 @@ export function connect(app: App): void {
     button("contacts", () => setContacts(!app.contacts));
     button("shoot", () => app.shoot(...middle()));
     button("drop", () => app.drop(...middle()));
+    button("fork", () => app.toggleFork());
     button("theme", () => app.toggleTheme());
     button("help", () => keys.showModal());
     timeline.addEventListener("input", () => app.guarded(() => look(Number(timeline.value))));
@@ -61,6 +64,7 @@ export function connect(app: App): void {
         x: () => app.drop(...(aim ?? middle())),
         c: () => setContacts(!app.contacts),
         f: () => app.lookAtAll(),
+        k: () => app.toggleFork(),
         d: () => app.toggleTheme(),
         "[": () => setSpeed(speed.selectedIndex - 1),
         "]": () => setSpeed(speed.selectedIndex + 1),
@@ -81,10 +85,34 @@ export function connect(app: App): void {
         app.guarded(action);
     });
 
+    drawing(app);
+    new Files(app);
+    sources(app);
     sheets();
     const system = matchMedia("(prefers-color-scheme: dark)");
     app.setTheme(system.matches ? dark : light);
     system.addEventListener("change", () => app.setTheme(system.matches ? dark : light));
+}
+
+// What is drawn of the engine's own structures.
+function drawing(app: App): void {
+    const boxes = element<HTMLSelectElement>("boxes");
+    boxes.addEventListener("change", () => app.setStructure({ boxes: boxes.value as BoxView }));
+    for (const what of ["joints", "momenta", "trails"] as const) {
+        const tick = element<HTMLInputElement>(`show-${what}`);
+        tick.addEventListener("change", () => app.setStructure({ [what]: tick.checked }));
+    }
+}
+
+// Where scenes are computed, if there is a choice.
+function sources(app: App): void {
+    const where = element<HTMLSelectElement>("where"), { sources } = app;
+    element("where-label").hidden = !sources.connection || !sources.engine;
+    where.value = sources.native ? "native" : "page";
+    where.addEventListener("change", () => {
+        sources.native = where.value === "native" && sources.connection !== null;
+        app.guarded(() => app.open(app.player.sceneName));
+    });
 }
 
 // Panels that are sheets on narrow windows.

@@ -1,5 +1,4 @@
 // The figures of the last step: counts, energy, time by stage, and the hash.
-import type { Engine } from "../engine/engine";
 import type { Player } from "../player";
 import { amount, element, make, Pairs } from "./dom";
 
@@ -12,10 +11,10 @@ export class Figures {
     private native: NativeHashes | null = null;
     private frames = 0;
     private since = performance.now();
-    private rate = 0;
+    rate = 0; // frames a second
 
-    constructor(engine: Engine) {
-        for (const stage of engine.stages) {
+    constructor(stages: string[]) {
+        for (const stage of stages) {
             const bar = make("div", "", { class: "bar" }), ms = make("span", "", { class: "ms" });
             const cell = make("div");
             cell.append(bar);
@@ -23,6 +22,7 @@ export class Figures {
             element("bars").append(name, cell, ms);
             this.bars.push({ bar, ms, mean: 0 });
         }
+        if (document.querySelector('meta[name="lendulet-wasm"]')) return; // nothing is computed in this page
         fetch("native-hashes.json").then(async (answer) => {
             if (answer.ok) this.native = (await answer.json()) as NativeHashes;
         }).catch(() => undefined); // without the file nothing is compared
@@ -40,6 +40,14 @@ export class Figures {
     show(player: Player): void {
         const s = player.world.statistics();
         this.numbers.set("frames", `${this.rate.toFixed(0)} /s`);
+        const where = { page: "in the page", native: "natively", recording: "long ago" };
+        this.numbers.set("computed", where[player.world.kind]);
+        if (player.twin) {
+            const same = player.twin.hash === player.world.hash;
+            element("apart").textContent = same ? "same bits so far" : `${amount(player.apart, "m")} apart`;
+        }
+        this.showHash(player);
+        if (!s) return;
         this.numbers.set("step", `${player.stepTime.toFixed(2)} ms`);
         this.numbers.set("bodies", `${s.bodies}`);
         this.numbers.set("awake", `${s.awake}`);
@@ -56,11 +64,14 @@ export class Figures {
             bar.style.width = `${(100 * mean) / most}%`;
             ms.textContent = mean.toFixed(2);
         }
-        this.showHash(player);
     }
 
     private showHash(player: Player): void {
-        element("hash").textContent = player.world.hash;
+        element("hash").textContent = player.world.hash || "–";
+        if (player.world.kind !== "page") {
+            element("same").textContent = "";
+            return;
+        }
         const same = element("same"), step = player.world.stepCount;
         const expected = this.native?.hashes[player.sceneName];
         if (!this.native || !expected || player.touched || step < this.native.steps) same.textContent = "";

@@ -1,17 +1,17 @@
 // What is known of the picked body, and how its kinetic energy went over the last seconds.
-import { type BodyNumber, BodyType, type World } from "../engine/engine";
+import { BodyType, JointType, type World } from "../engine/types";
 import { amount, element, Pairs, triple } from "./dom";
 
 const seconds = 4;
 const length = (v: readonly number[]) => Math.hypot(v[0], v[1], v[2]);
 
 export class Inspector {
-    body: BodyNumber | null = null;
+    body: number | null = null;
     private readonly pairs = new Pairs(element("body-numbers"));
     private readonly plot = element<HTMLCanvasElement>("plot");
     private samples: { time: number; energy: number }[] = [];
 
-    pick(body: BodyNumber | null): void {
+    pick(body: number | null): void {
         if (body !== this.body) this.samples = [];
         this.body = body;
         element("nothing").hidden = body !== null;
@@ -32,7 +32,7 @@ export class Inspector {
     show(world: World): boolean {
         if (this.body === null) return true;
         const s = world.body(this.body);
-        if (!s) return false;
+        if (!s) return world.kind === "native"; // it may be on its way
         const kind = ["static", "kinematic", s.asleep ? "asleep" : "awake"][s.type];
         this.pairs.set("name", s.name || "–");
         this.pairs.set("state", kind);
@@ -45,8 +45,34 @@ export class Inspector {
         this.pairs.set("angular mom.", amount(length(s.angularMomentum), "kg m²/s"));
         this.pairs.set("kinetic en.", amount(s.kineticEnergy, "J"));
         this.pairs.set("potential en.", amount(s.potentialEnergy, "J"));
+        this.showJoints(world);
         this.draw();
         return true;
+    }
+
+    // The joints of the body: what they are, where they stand between their limits, and the load on them.
+    private showJoints(world: World): void {
+        const list = element("body-joints"), lines: string[] = [];
+        const joints = world.statistics()?.joints ? world.joints() : [];
+        for (const j of joints) {
+            if (j.bodyA !== this.body && j.bodyB !== this.body) continue;
+            const degrees = (v: number) => `${((180 * v) / Math.PI).toFixed(0)}°`;
+            const limited = j.limit[0] < j.limit[1];
+            let text = JointType[j.type];
+            if (j.type === JointType.hinge) {
+                text += ` ${degrees(j.value)}`;
+                if (limited) text += ` (${degrees(j.limit[0])} to ${degrees(j.limit[1])})`;
+                text += `, ${amount(j.velocity, "rad/s")}`;
+            } else if (j.type === JointType.slider) {
+                text += ` ${amount(j.value, "m")}`;
+                if (limited) text += ` (${j.limit[0].toFixed(2)} to ${j.limit[1].toFixed(2)})`;
+            }
+            lines.push(`${text}, ${amount(length(j.force), "N")}`);
+            if (lines.length === 12) break;
+        }
+        const text = lines.join("\n");
+        if (list.textContent !== text) list.textContent = text;
+        element("joints-title").hidden = lines.length === 0;
     }
 
     private draw(): void {

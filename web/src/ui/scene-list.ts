@@ -1,5 +1,5 @@
 // The list of built-in scenes, in groups, with a search field.
-import type { SceneInfo } from "../engine/engine";
+import type { SceneInfo } from "../engine/types";
 import { groups, isListed, sizeOf, titleOf } from "../scenes";
 import { element, make } from "./dom";
 

@@ -1,9 +1,9 @@
 // All colliders as instanced meshes: one for each geometry. Poses between two steps are interpolated here.
 import * as THREE from "three";
-import { BodyType, type Collider, poseStride, ShapeType, type World } from "../engine/engine";
+import { BodyType, type Collider, groupStride, poseStride, type Shapes, ShapeType } from "../engine/types";
 import { modelOf } from "./geometry";
 import { bodyMaterial, glassMaterial, groundMaterial } from "./materials";
-import { type Colouring, colourOf, driven, highlight } from "./theme";
+import { type Colouring, colourOf, colourOfGroup, driven, highlight } from "./theme";
 
 interface Batch {
     mesh: THREE.InstancedMesh;
@@ -17,8 +17,10 @@ interface Batch {
 // How colliders are drawn: what moves, what it stands on, and containers, into which one must see.
 type Kind = "body" | "ground" | "glass";
 
-function kindOf(c: Collider, type: BodyType, parts: number): Kind {
-    if (type === BodyType.kinematic) return parts > 2 ? "glass" : "body";
+function kindOf(c: Collider, name: string, parts: number): Kind {
+    const type = c.bodyType;
+    if (name === "glass") return "glass";
+    if (type === BodyType.kinematic) return name === "drum" && parts > 2 ? "glass" : "body";
     if (type === BodyType.dynamic) return "body";
     const wall = c.type === ShapeType.box && c.size[1] > 1.5 * Math.min(c.size[0], c.size[2]);
     return wall ? "glass" : "ground";
@@ -40,39 +42,45 @@ export class Bodies {
     private readonly geometries = new Map<string, THREE.BufferGeometry>(); // by ShapeModel.key
 
     // Anew from the world's colliders. `other`: of another scene, whose surfaces must be read again.
-    build(world: World, other: boolean): void {
+    build(shapes: Shapes, other: boolean): void {
         this.clear();
         if (other) {
             for (const geometry of this.geometries.values()) geometry.dispose();
             this.geometries.clear();
         }
-        this.types = Array.from(world.bodies(), (number) => number).map((n) => world.body(n)?.type ?? BodyType.fixed);
-        const colliders = world.colliders(), batches = new Map<string, [Kind, Collider[]]>();
+        const { colliders } = shapes, batches = new Map<string, [Kind, Collider[]]>();
         const parts = new Map<number, number>(); // colliders by body
-        for (const { body } of colliders) parts.set(body, (parts.get(body) ?? 0) + 1);
+        this.types = new Array(shapes.bodies).fill(BodyType.fixed);
+        for (const { body, bodyType } of colliders) {
+            this.types[body] = bodyType;
+            parts.set(body, (parts.get(body) ?? 0) + 1);
+        }
+        const names = new Map<number, string>();
+        for (const body of parts.keys()) names.set(body, shapes.name(body));
         for (const c of colliders) {
             if (c.trigger) continue;
-            const kind = kindOf(c, this.types[c.body], parts.get(c.body)!);
-            const key = `${kind} ${modelOf(c)?.key ?? "plane"}`;
+            const kind = kindOf(c, names.get(c.body)!, parts.get(c.body)!);
+            const key = `${kind} ${+(c.bodyType === BodyType.fixed)} ${modelOf(c)?.key ?? "plane"}`;
             if (!batches.has(key)) batches.set(key, [kind, []]);
             batches.get(key)![1].push(c);
         }
-        for (const [kind, list] of batches.values()) this.add(world, list, kind);
+        for (const [kind, list] of batches.values()) this.add(shapes, list, kind);
     }
 
-    private add(world: World, colliders: Collider[], kind: Kind): void {
+    private add(shapes: Shapes, colliders: Collider[], kind: Kind): void {
         const fixed = this.types[colliders[0].body] === BodyType.fixed;
         const model = modelOf(colliders[0]);
         const key = model?.key ?? "plane";
         let geometry = this.geometries.get(key);
         if (!geometry) {
-            geometry = model ? model.make((mesh) => world.surface(mesh)) : new THREE.PlaneGeometry(2e3, 2e3);
+            geometry = model ? model.make(shapes.surface) : new THREE.PlaneGeometry(2e3, 2e3);
             this.geometries.set(key, geometry);
         }
         const material = { ground: groundMaterial, glass: glassMaterial, body: bodyMaterial }[kind]();
         const mesh = new THREE.InstancedMesh(geometry, material, colliders.length);
         mesh.instanceMatrix.setUsage(fixed ? THREE.StaticDrawUsage : THREE.DynamicDrawUsage);
         mesh.frustumCulled = false; // bounds change with every step
+        mesh.userData.glass = kind === "glass";
         mesh.receiveShadow = kind !== "glass";
         mesh.castShadow = kind === "body" || (kind === "ground" && colliders.every(isSmall));
         const white = new THREE.Color(1, 1, 1);
@@ -113,7 +121,8 @@ export class Bodies {
             const array = batch.mesh.instanceMatrix.array as Float32Array;
             for (let i = 0; i < batch.colliders.length; ++i) {
                 const body = batch.colliders[i].body;
-                if (body >= there) {
+                // Not there yet, or no more: recordings say so by a rotation of nothing.
+                if (body >= there || isGone(now, poseStride * body + 4)) {
                     array.fill(0, 16 * i, 16 * i + 16);
                     continue;
                 }
@@ -141,19 +150,40 @@ export class Bodies {
         this.rotation.normalize();
     }
 
-    paint(how: Colouring, poses: Float32Array, selected: number, ground: number): void {
+    // `groups`: islands and colours of contacts, where they are asked for.
+    paint(how: Colouring, poses: Float32Array, groups: Int32Array, selected: number, ground: number): void {
         for (const { mesh, colliders, fixed } of this.batches) {
             const array = mesh.instanceColor!.array as Float32Array;
             for (let i = 0; i < colliders.length; ++i) {
                 const body = colliders[i].body;
                 if (fixed) this.colour.setHex(ground);
                 else if (this.types[body] === BodyType.kinematic) this.colour.copy(driven);
+                else if (how === "island") colourOfGroup(this.colour, groups[groupStride * body] ?? -1);
+                else if (how === "colour") colourOfGroup(this.colour, groups[groupStride * body + 1] ?? -1);
                 else colourOf(this.colour, how, body, poses[poseStride * body + 3] ?? 0);
                 if (body === selected) highlight(this.colour);
                 this.colour.toArray(array, 3 * i);
             }
             mesh.instanceColor!.needsUpdate = true;
         }
+    }
+
+    // The body that a ray meets first in the picture, static ones too: for worlds that cannot be asked.
+    hit(ray: THREE.Ray): { body: number; point: THREE.Vector3 } | null {
+        const caster = new THREE.Raycaster(ray.origin, ray.direction);
+        let best: { body: number; point: THREE.Vector3 } | null = null, nearest = Infinity;
+        for (const { mesh, colliders } of this.batches) {
+            mesh.computeBoundingSphere(); // it moves, and three.js keeps the first one
+            for (const { distance, instanceId, point } of caster.intersectObject(mesh)) {
+                if (distance >= nearest || instanceId === undefined) continue;
+                nearest = distance;
+                best = { body: colliders[instanceId].body, point };
+            }
+        }
+        return best;
+    }
+    isDynamic(body: number): boolean {
+        return this.types[body] === BodyType.dynamic;
     }
 
     // Bounds of what moves; of everything where nothing does. Shapes without end are left out.
@@ -176,6 +206,10 @@ export class Bodies {
         }
         return this.bounds;
     }
+}
+
+function isGone(poses: Float32Array, q: number): boolean {
+    return poses[q + 3] === 0 && poses[q] === 0 && poses[q + 1] === 0 && poses[q + 2] === 0;
 }
 
 // A square of the plane around the point that is nearest to the body's origin.

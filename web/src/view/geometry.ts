@@ -1,6 +1,6 @@
 // Surfaces of the engine's shapes for drawing. Colliders whose surfaces differ by scale alone share one geometry.
 import * as THREE from "three";
-import { type Collider, ShapeType, type Surface } from "../engine/engine";
+import { type Collider, ShapeType, type Surface } from "../engine/types";
 
 export interface ShapeModel {
     key: string; // equal keys: equal geometry

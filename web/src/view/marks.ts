@@ -1,6 +1,6 @@
 // What is drawn over the bodies: contact points with their normals and impulses, and the line of a grip.
 import * as THREE from "three";
-import { contactStride } from "../engine/engine";
+import { contactStride } from "../engine/types";
 
 const most = 20000;
 

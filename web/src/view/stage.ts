@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { gridColour } from "./materials";
+import { Occlusion } from "./occlusion";
 import type { Theme } from "./theme";
 
 export class Stage {
@@ -13,8 +14,9 @@ export class Stage {
     private readonly sky = new THREE.HemisphereLight();
     private readonly sunDirection = new THREE.Vector3(0.45, 1, 0.35).normalize();
     private size = [0, 0];
+    private occlusion: Occlusion | null = null;
 
-    constructor(readonly canvas: HTMLCanvasElement, shadowSize: number) {
+    constructor(readonly canvas: HTMLCanvasElement, shadowSize: number, occlusion: boolean) {
         // Without shadows the machine draws in software, most likely: smooth edges are left out as well.
         const antialias = shadowSize > 0;
         this.renderer = new THREE.WebGLRenderer({ canvas, antialias, powerPreference: "high-performance" });
@@ -32,6 +34,11 @@ export class Stage {
         this.sun.shadow.normalBias = 0.03;
         this.sun.shadow.bias = -0.0002;
         this.scene.add(this.sky, this.sun, this.sun.target);
+        if (occlusion) this.occlusion = new Occlusion(this.renderer, this.scene, this.camera);
+    }
+    // For machines that are too slow for it.
+    dropOcclusion(): void {
+        this.occlusion = null;
     }
 
     apply(theme: Theme): void {
@@ -106,13 +113,15 @@ export class Stage {
             this.size = [width, height];
             this.renderer.setPixelRatio(ratio);
             this.renderer.setSize(width, height, false);
+            this.occlusion?.resize(width, height, ratio);
             this.camera.aspect = width / Math.max(height, 1);
             this.camera.updateProjectionMatrix();
         }
         return this.controls.update() || resized;
     }
     render(): void {
-        this.renderer.render(this.scene, this.camera);
+        if (this.occlusion) this.occlusion.render(this.reach);
+        else this.renderer.render(this.scene, this.camera);
     }
 
     // The ray through a point of the page.

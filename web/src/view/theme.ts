@@ -29,8 +29,8 @@ const slow = new THREE.Color(0x3f6f9f), middling = new THREE.Color(0xe6c66a), fa
 const picked = new THREE.Color(0xffffff);
 export const driven = new THREE.Color(0x9a86b8); // kinematic bodies
 
-export type Colouring = "body" | "sleep" | "speed";
-export const colourings: Colouring[] = ["body", "sleep", "speed"];
+export type Colouring = "body" | "sleep" | "speed" | "island" | "colour";
+export const colourings: Colouring[] = ["body", "sleep", "speed", "island", "colour"];
 
 // A number of its own for each body, the same in every run.
 function scramble(index: number): number {
@@ -54,6 +54,11 @@ export function colourOf(out: THREE.Color, how: Colouring, index: number, speed:
         if (t < 0.5) out.lerpColors(slow, middling, 2 * t);
         else out.lerpColors(middling, fast, 2 * t - 1);
     }
+}
+// By the number of an island, or of a colour in which contacts are solved; below 0: none.
+export function colourOfGroup(out: THREE.Color, group: number): void {
+    if (group < 0) out.copy(resting);
+    else out.setHSL(((group * 0.61803) % 1 + 1) % 1, 0.5, 0.58);
 }
 export function highlight(out: THREE.Color): void {
     out.lerp(picked, 0.55);

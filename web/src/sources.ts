@@ -1,0 +1,69 @@
+// Where worlds come from: the engine in the page, a native engine behind this very server, or a file that it serves.
+import type { Engine } from "./engine/engine";
+import { RecordingWorld } from "./engine/recording";
+import { type Catalogue, Connection, StreamWorld } from "./engine/stream";
+import { Refused, type World } from "./engine/types";
+
+const meta = (name: string) => document.querySelector<HTMLMetaElement>(`meta[name="${name}"]`)?.content ?? null;
+
+export class Sources implements Catalogue {
+    scenes: Catalogue["scenes"] = [];
+    stages: string[] = [];
+    choices: string[][] = [[], [], []];
+    native = false; // new worlds are computed by the native engine
+    connection: Connection | null = null;
+    // What the server was started with.
+    given: { name: string; make: () => World | Promise<World> } | null = null;
+    lost: (sentence: string) => void = () => undefined;
+
+    private constructor(readonly engine: Engine | null) {}
+
+    static get wantsEngine(): boolean {
+        return meta("lendulet-wasm") !== "no";
+    }
+    static async find(engine: Engine | null): Promise<Sources> {
+        const sources = new Sources(engine);
+        if (engine) sources.take(engine);
+        if (meta("lendulet-stream") !== null) await sources.connect();
+        const recording = meta("lendulet-recording");
+        if (recording !== null) {
+            const bytes = new Uint8Array(await (await fetch("recording")).arrayBuffer());
+            sources.given = { name: recording, make: () => new RecordingWorld(bytes) };
+        }
+        return sources;
+    }
+    private take(catalogue: Catalogue): void {
+        this.scenes = catalogue.scenes;
+        this.stages = catalogue.stages;
+        this.choices = catalogue.choices;
+    }
+    private async connect(): Promise<void> {
+        const address = new URL("stream", location.href);
+        address.protocol = address.protocol === "https:" ? "wss:" : "ws:";
+        address.hash = address.search = "";
+        const connection = await Connection.open(address.href);
+        this.take(await connection.catalogue());
+        connection.lost = () => {
+            this.native = false;
+            this.connection = null;
+            this.lost(this.engine
+                ? "The native engine is gone; scenes that you open now run in the page."
+                : "The native engine is gone: start it and load the page again.");
+        };
+        this.connection = connection;
+        this.native = true;
+        const name = meta("lendulet-stream") || meta("lendulet-title") || "scene";
+        this.given = { name, make: () => this.openNative("") };
+    }
+
+    // Throws Refused, or rejects, with the engine's sentence.
+    open(scene: string): World | Promise<World> {
+        if (this.native) return this.openNative(scene);
+        if (!this.engine) throw new Refused("This page has no engine of its own (./dev web builds one with it).");
+        return this.engine.create(scene);
+    }
+    private openNative(scene: string): Promise<World> {
+        if (!this.connection) throw new Refused("The native engine is gone.");
+        return StreamWorld.open(this.connection, scene);
+    }
+}

@@ -1,0 +1,134 @@
+// Files in and out: what is dropped onto the page, and what can be saved from it.
+import type { App } from "../app";
+import { readGltf } from "../engine/gltf";
+import { isRecording, RecordingWorld } from "../engine/recording";
+import { Refused } from "../engine/types";
+import { element } from "./dom";
+import { isDeeds } from "./permalink";
+import { download, Recorder, type Repro } from "./record";
+
+const largest = 256 * 1024 * 1024; // bytes of a file
+
+export class Files {
+    private recorder: Recorder | null = null;
+    private film: MediaRecorder | null = null;
+
+    constructor(private readonly app: App) {
+        const on = (id: string, action: () => void) => element(id).addEventListener("click", () => app.guarded(action));
+        on("save-repro", () => this.saveRepro());
+        on("save-picture", () => this.savePicture());
+        on("record", () => this.record());
+        on("film", () => this.filmNow());
+        const chooser = element<HTMLInputElement>("file");
+        on("open-file", () => chooser.click());
+        chooser.addEventListener("change", () => {
+            if (chooser.files?.[0]) void this.open(chooser.files[0]);
+            chooser.value = "";
+        });
+        window.addEventListener("dragover", (event) => event.preventDefault());
+        window.addEventListener("drop", (event) => {
+            event.preventDefault();
+            const file = event.dataTransfer?.files[0];
+            if (file) void this.open(file);
+        });
+        app.opened = () => this.stop();
+        const { player } = app, before = player.stepped;
+        player.stepped = (poses) => {
+            before(poses);
+            this.recorder?.add(poses, () => player.world.shapes());
+        };
+    }
+
+    // What is wrong with a file is said, and what there is stays.
+    async open(file: File): Promise<void> {
+        try {
+            if (file.size > largest) throw new Refused(`${file.name} is larger than 256 MB.`);
+            const bytes = new Uint8Array(await file.arrayBuffer());
+            if (isRecording(bytes)) this.openRecording(file.name, bytes);
+            else if (/\.gl(b|tf)$/i.test(file.name)) this.openGltf(file.name, bytes);
+            else if (/\.json$/i.test(file.name)) this.openRepro(file.name, bytes);
+            else throw new Refused(`${file.name} is neither glTF nor a recording nor a repro file.`);
+        } catch (error) {
+            if (!(error instanceof Refused)) console.error(error);
+            this.app.say(error instanceof Error ? error.message : String(error));
+        }
+    }
+    private openRecording(name: string, bytes: Uint8Array): void {
+        this.app.openWith(name, () => new RecordingWorld(bytes));
+    }
+    private openGltf(name: string, bytes: Uint8Array): void {
+        const { engine } = this.app.sources;
+        if (!engine) throw new Refused(`This page has no engine of its own: lendulet view ${name} shows the file.`);
+        const warnings: string[] = [];
+        this.app.openWith(name, () => readGltf(engine, bytes, warnings));
+        if (warnings.length > 0) this.app.say(`${name}: ${warnings[0]}`);
+    }
+    private openRepro(name: string, bytes: Uint8Array): void {
+        let repro: Partial<Repro>;
+        try {
+            repro = JSON.parse(new TextDecoder().decode(bytes)) as Partial<Repro>;
+        } catch {
+            throw new Refused(`${name} is not JSON.`);
+        }
+        if (repro.lendulet !== "repro" || typeof repro.scene !== "string" || !isDeeds(repro.deeds))
+            throw new Refused(`${name} is no repro file.`);
+        const { steps, hash, deeds } = repro, { app } = this;
+        if (!app.open(repro.scene, {}, deeds)) return;
+        const { player } = app, before = player.stepped;
+        player.stepped = (poses) => {
+            before(poses);
+            if (player.world.stepCount !== steps) return;
+            player.stepped = before;
+            if (!player.world.hash) return;
+            const same = player.world.hash === hash;
+            app.say(same ? "The same bits as when it was saved." : "Not the bits that were saved.");
+        };
+    }
+
+    private saveRepro(): void {
+        const { player } = this.app;
+        const repro: Repro = {
+            lendulet: "repro", version: 1, scene: player.sceneName, steps: player.world.stepCount,
+            hash: player.world.hash, deeds: player.deeds,
+        };
+        download(`${this.name}.json`, JSON.stringify(repro, null, 1));
+    }
+    private savePicture(): void {
+        this.app.stage.render();
+        this.app.stage.canvas.toBlob((blob) => blob && download(`${this.name}.png`, blob));
+    }
+    private record(): void {
+        const { player } = this.app, button = element("record");
+        if (this.recorder) {
+            download(`${this.name}.rec`, this.recorder.finish(player.world.hash));
+            this.recorder = null;
+        } else {
+            player.resume();
+            const { world } = player;
+            this.recorder = new Recorder(player.sceneName, world.stepSize, world.shapes(), player.now);
+        }
+        button.setAttribute("aria-pressed", String(this.recorder !== null));
+    }
+    // Ends a recording that another scene would spoil.
+    stop(): void {
+        this.recorder = null;
+        element("record").setAttribute("aria-pressed", "false");
+    }
+    private filmNow(): void {
+        const button = element("film");
+        if (this.film) {
+            this.film.stop();
+            this.film = null;
+        } else {
+            const parts: Blob[] = [], film = new MediaRecorder(this.app.stage.canvas.captureStream(30));
+            film.addEventListener("dataavailable", (event) => parts.push(event.data));
+            film.addEventListener("stop", () => download(`${this.name}.webm`, new Blob(parts)));
+            film.start();
+            this.film = film;
+        }
+        button.setAttribute("aria-pressed", String(this.film !== null));
+    }
+    private get name(): string {
+        return this.app.player.sceneName.replaceAll(/[^\w.-]+/g, "-");
+    }
+}

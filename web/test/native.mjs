@@ -1,0 +1,173 @@
+// Checks of the native stream: `lendulet view` and the page that it serves.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { request } from "node:http";
+import { connect } from "node:net";
+import { randomBytes } from "node:crypto";
+
+// Starts the program; resolves to { url, port, end, output, ended } once it says where it listens.
+export function startNative(program, folder, scene, ...options) {
+    const child = spawn(program, ["view", scene, "--port", "0", "--page", folder, ...options]);
+    let output = "";
+    child.stderr.on("data", (text) => (output += text));
+    const ended = new Promise((done) => child.on("exit", (code) => done(code)));
+    return new Promise((done, fail) => {
+        child.stdout.on("data", (text) => {
+            output += text;
+            const found = /http:\/\/localhost:(\d+)\//.exec(output);
+            if (found) done({
+                url: found[0], port: Number(found[1]), ended, output: () => output,
+                end: () => (child.kill("SIGINT"), ended),
+            });
+        });
+        child.on("exit", () => fail(new Error(`lendulet view ended: ${output}`)));
+        setTimeout(() => fail(new Error(`lendulet view says nothing: ${output}`)), 20000).unref();
+    });
+}
+
+// The status with which an upgrade is answered; with 101, its socket.
+function upgrade(port, headers) {
+    return new Promise((done, fail) => {
+        const asked = request({
+            port, host: "127.0.0.1", path: "/stream",
+            headers: {
+                Host: `localhost:${port}`, Connection: "Upgrade", Upgrade: "websocket", "Sec-WebSocket-Version": "13",
+                "Sec-WebSocket-Key": randomBytes(16).toString("base64"), ...headers,
+            },
+        });
+        asked.on("upgrade", (answer, socket) => done({ status: answer.statusCode, socket }));
+        asked.on("response", (answer) => (answer.resume(), done({ status: answer.statusCode })));
+        asked.on("error", fail);
+        asked.end();
+    });
+}
+const closed = (socket) => new Promise((done) => {
+    socket.on("close", done);
+    socket.on("error", done);
+    socket.resume();
+});
+// A message of a client, masked as the protocol wants it.
+function frame(text) {
+    const body = Buffer.from(text), mask = randomBytes(4);
+    const head = body.length < 126 ? Buffer.from([0x81, 0x80 | body.length])
+        : body.length < 65536 ? Buffer.from([0x81, 0xfe, body.length >> 8, body.length & 255])
+        : Buffer.concat([Buffer.from([0x81, 0xff, 0, 0, 0, 0]), Buffer.from(Uint32Array.of(body.length).buffer).reverse()]);
+    return Buffer.concat([head, mask, body.map((byte, i) => byte ^ mask[i & 3])]);
+}
+const get = (port, path, headers = {}) => new Promise((done, fail) => {
+    request({ port, host: "127.0.0.1", path, headers: { Host: `localhost:${port}`, ...headers } }, (answer) => {
+        answer.resume();
+        done(answer.statusCode);
+    }).on("error", fail).end();
+});
+
+const until = (page, condition, argument = null) => page.waitForFunction(condition, argument, { polling: 50 });
+
+export const nativeChecks = {
+    async "native: the page shows a native world, and what is done by hand acts in it"({ open, program, folder }) {
+        const native = await startNative(program, folder, "large_pyramid:6");
+        const page = await open({}, "?shadows=0#paused=1", native.url);
+        await until(page, () => window.lendulet.player.world?.kind === "native");
+        const base = await page.evaluate(() => window.lendulet.player.now.length / 8);
+        assert.equal(base, 22);
+        // The same bits as in the page.
+        const step = async (count) => {
+            const from = await page.evaluate(() => window.lendulet.player.world.stepCount);
+            for (let i = 1; i <= count; ++i) {
+                await page.evaluate(() => window.lendulet.player.step());
+                await until(page, (wanted) => window.lendulet.player.world.stepCount === wanted, from + i);
+            }
+        };
+        await step(30);
+        await until(page, () => window.lendulet.player.world.hash !== "");
+        const hashes = await page.evaluate(() => {
+            const { player, sources } = window.lendulet, other = sources.engine.create("large_pyramid:6");
+            other.run(30);
+            return [player.world.hash, other.hash];
+        });
+        assert.equal(hashes[0], hashes[1]);
+        await page.click("#shoot");
+        await until(page, () => window.lendulet.player.now.length / 8 === 23);
+        await step(20);
+        await until(page, () => window.lendulet.player.history.moments.length > 8);
+        await page.evaluate(() => {
+            window.lendulet.player.look(4);
+            window.lendulet.player.step();
+        });
+        await until(page, () => window.lendulet.player.now.length / 8 === 22);
+        await until(page, () => window.lendulet.player.world.stepCount === 21);
+        // Settings, picking and playing.
+        await page.fill("#set-substeps", "3");
+        await page.press("#set-substeps", "Enter");
+        await until(page, () => window.lendulet.player.world.settings()?.solverSteps === 3);
+        const at = await page.evaluate(() => window.lendulet.stage.project(window.lendulet.player.position(21)));
+        await page.mouse.click(...at);
+        await until(page, () => document.getElementById("body-numbers").textContent.includes("kg"));
+        await page.click("#play");
+        await until(page, () => window.lendulet.player.world.stepCount > 60);
+        await page.click("#fork");
+        await until(page, () => (window.lendulet.player.twin?.stepCount ?? 0) > 70);
+        await page.context().close();
+        assert.equal(await native.end(), 0);
+    },
+
+    async "native: foreign pages and names are refused, and only the page's files are served"({ program, folder }) {
+        const { port, end } = await startNative(program, folder, "stack:3");
+        const own = { Origin: `http://localhost:${port}` };
+        for (const headers of [{}, { Origin: "http://example.org" }, { Origin: "null" }, { Origin: `https://localhost:${port}` },
+            { Origin: `http://localhost:${port + 1}` }, { Origin: `http://localhost:${port}.example.org` },
+            { ...own, Host: `example.org:${port}` }])
+            assert.equal((await upgrade(port, headers)).status, 403, JSON.stringify(headers));
+        const { status, socket } = await upgrade(port, own);
+        assert.equal(status, 101);
+        socket.destroy();
+        assert.equal(await get(port, "/"), 200);
+        assert.equal(await get(port, "/viewer.js"), 200);
+        assert.equal(await get(port, "/", { Host: "example.org" }), 403);
+        for (const path of ["/../CMakeLists.txt", "/%2e%2e/secret", "/..%2f..%2fetc/passwd", "//etc/passwd", "/.hidden", "/recording"])
+            assert.equal(await get(port, path), 404, path);
+        assert.equal(await end(), 0);
+    },
+
+    async "native: clients that vanish, say nonsense, too much or nothing leave others alone"({ program, folder }) {
+        const { port, end } = await startNative(program, folder, "stack:3");
+        const own = { Origin: `http://localhost:${port}` };
+        const enter = async () => (await upgrade(port, own)).socket;
+        const answers = async (socket) => {
+            socket.write(frame(JSON.stringify({ id: 5, open: "", steps: 2, want: ["poses"] })));
+            const bytes = await new Promise((done) => socket.once("data", done));
+            assert.equal(bytes[0], 0x82); // a whole binary message
+        };
+        const first = await enter();
+        await answers(first);
+        // Half a message, then nothing more; a connection cut in the middle of an answer that nobody reads.
+        const half = await enter();
+        half.write(frame(JSON.stringify({ open: "box_pile:2000", want: ["poses"] })).subarray(0, 20));
+        const deaf = await enter();
+        deaf.pause();
+        deaf.write(frame(JSON.stringify({ open: "box_pile:4000" })));
+        for (let i = 0; i < 200; ++i) deaf.write(frame(JSON.stringify({ steps: 0, want: ["poses", "shapes"] })));
+        await answers(first);
+        half.destroy();
+        deaf.destroy();
+        // Beyond the bound: closed. Bytes of no protocol: closed or refused. No JSON: answered.
+        const loud = await enter();
+        loud.write(frame("x".repeat(70000)));
+        await closed(loud);
+        const raw = connect(port, "127.0.0.1");
+        raw.write("\x00\x01\x02 no protocol\r\n\r\n");
+        await closed(raw);
+        const odd = await enter();
+        odd.write(frame("[1, 2"));
+        assert.equal((await new Promise((done) => odd.once("data", done)))[0], 0x82);
+        await answers(first);
+        first.destroy();
+        assert.equal(await end(), 0);
+    },
+
+    async "native: without a visitor it gives up with code 0"({ program, folder }) {
+        const { ended, output } = await startNative(program, folder, "stack:3", "--give-up", "1");
+        assert.equal(await ended, 0);
+        assert.match(output(), /ends after 1 s/);
+    },
+};
