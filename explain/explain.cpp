@@ -96,8 +96,8 @@ std::vector<Step> gjk_steps(const Pair& p, const ConvexDistance& d, const Record
     int number = 0;
     for (const Recorder::SimplexStep& s : r.simplices) {
         Step step = difference_step(p, "simplex " + std::to_string(++number),
-                                    text("of %.0f points; the nearest of it is %.6g m from O",
-                                         static_cast<double>(s.points.size()), length(s.nearest)));
+                                    std::to_string(s.points.size()) + (s.points.size() == 1 ? " point" : " points") +
+                                        text("; O is %.6g m from them", length(s.nearest)));
         if (s.points.size() == 4) step.note = "four points hold O: the cores overlap";
         for (size_t i = 0; i < s.points.size(); ++i)
             for (size_t k = 0; k < i; ++k) step.marks.push_back(path({s.points[k], s.points[i]}, orange, 1.4));
@@ -175,6 +175,13 @@ Result<std::vector<Step>> clip_steps(const Pair& p, const ConvexDistance& d) {
     for (int i = 0; i < count; ++i)
         last.marks.push_back(dot(wide(clipped.point(kept[i], kept[i].separation)), red, std::to_string(i + 1)));
     steps.push_back(std::move(last));
+    // Seen from above the reference face: its axes are the picture's.
+    for (Step& step : steps)
+        for (Mark& mark : step.marks)
+            for (Vec& q : mark.points) {
+                const Vec from = q - wide(clipped.origin);
+                q = {dot(from, wide(clipped.u)), dot(from, wide(clipped.v)), dot(from, wide(clipped.normal))};
+            }
     return steps;
 }
 

@@ -104,13 +104,14 @@ std::string ridges(const Mark& m, const View& view) {
         bool front = view.project(wide(n)).depth > 0.0;
         for (size_t k = 0; k < 3; ++k) edges.push_back({t[i + k], t[i + (k + 1) % 3], n, front});
     }
+    const float same = points.size() > 300 ? 0.8f : 0.99f;  // round ones are given by many points
     Mark thin = m;
     thin.fill.clear(), thin.width = 0.6;
     std::string out;
     for (const Edge& e : edges)
         for (const Edge& other : edges) {
             if (other.from != e.to || other.to != e.from || e.from > e.to || !(e.front || other.front)) continue;
-            if (dot(e.normal, other.normal) > 0.99f) continue;
+            if (dot(e.normal, other.normal) > same) continue;
             out += polygon({view.at(wide(corners[e.from])), view.at(wide(corners[e.to]))}, thin, false);
         }
     return out;

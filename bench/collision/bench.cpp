@@ -1,7 +1,6 @@
 #include "bench/collision/bench.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -11,9 +10,6 @@
 
 namespace lendulet::bench {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-constexpr double wrong = 1e-3;  // m; an answer that is off by more has failed
 
 Status check(const CollisionOptions& o) {
     auto in = [](int value, int least, int most) { return value >= least && value <= most; };
@@ -33,7 +29,7 @@ CollisionRow judge(const Subject& subject, const PairSet& set, const std::vector
     for (size_t i = 0; i < answers.size(); ++i) {
         const double truth = subject.moved() ? set.cases[i].truth_moved : set.cases[i].truth;
         const double error = std::abs(answers[i] - truth);
-        if (!(error <= wrong)) ++row.failures;
+        if (!(error <= subject.allowed())) ++row.failures;
         else row.worst_error = std::max(row.worst_error, error);
     }
     return row;
@@ -49,10 +45,9 @@ void measure(const PairSet& set, const Subjects& subjects, int repeats, Collisio
     for (int round = 0; round < repeats; ++round)
         for (size_t s = 0; s < taking.size(); ++s) {
             taking[s]->rewind();
-            auto start = Clock::now();
+            const double start = computing_time();
             taking[s]->run(answers[s]);
-            std::chrono::duration<double, std::nano> took = Clock::now() - start;
-            times[s].push_back(took.count() / static_cast<double>(set.cases.size()));
+            times[s].push_back((computing_time() - start) / static_cast<double>(set.cases.size()));
         }
     for (size_t s = 0; s < taking.size(); ++s) rows.push_back(judge(*taking[s], set, answers[s], times[s]));
 }

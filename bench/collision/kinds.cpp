@@ -1,5 +1,4 @@
 // Balls, capsules and boxes by closed forms, and shapes on a mesh and on a height field of the same hills.
-#include <chrono>
 #include <cmath>
 
 #include "bench/collision/pairs.h"
@@ -11,7 +10,6 @@
 namespace lendulet::bench {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using scenes::Random;
 constexpr float margin = 0.02f;
 
@@ -42,7 +40,7 @@ void measure(const char* name, const Shape& shape_a, const Shape& shape_b, const
     const Geometry a = make_geometry(shape_a).value(), b = make_geometry(shape_b).value();
     std::vector<double> times, answers(places.size());
     for (int round = 0; round < repeats; ++round) {
-        auto start = Clock::now();
+        const double start = computing_time();
         for (size_t i = 0; i < places.size(); ++i) {
             const Placement& p = places[i];
             PairCache cache;
@@ -51,8 +49,7 @@ void measure(const char* name, const Shape& shape_a, const Shape& shape_b, const
                 collide({&a, &b, p.rotation_a, p.rotation_b, p.offset, margin}, cache, {}, out, max_mesh_manifolds);
             answers[i] = deepest_of(out, count);
         }
-        std::chrono::duration<double, std::nano> took = Clock::now() - start;
-        times.push_back(took.count() / static_cast<double>(places.size()));
+        times.push_back((computing_time() - start) / static_cast<double>(places.size()));
     }
     CollisionRow row{"lendulet manifold, single", name, median_of(times), judged ? 0.0 : -1.0, 0, true};
     for (size_t i = 0; judged && i < places.size(); ++i) {

@@ -64,6 +64,9 @@ private:
     std::vector<GjkCache> caches_;
 };
 
+// Manifolds prefer a face to a pair of edges that is less deep by up to 0.5 % of the smallest half extent, at most 1 m.
+constexpr double preference = 6e-3;
+
 double deepest(const Manifold& m) {
     float d = m.points[0].separation;
     for (int i = 1; i < m.count; ++i) d = minimum(d, m.points[i].separation);
@@ -75,6 +78,7 @@ class SingleManifold : public Subject {
 public:
     std::string routine() const override { return "lendulet manifold, single"; }
     bool takes(const PairSet& set) const override { return set.overlapping; }
+    double allowed() const override { return preference; }
     void load(const PairSet& set) override { data_.load(set); }
     void rewind() override { caches_.assign(data_.size(), {}); }
     void run(std::vector<double>& answers) override {
@@ -99,6 +103,7 @@ public:
     bool takes(const PairSet& set) const override {
         return set.overlapping && std::holds_alternative<Box>(set.cases[0].a);
     }
+    double allowed() const override { return preference; }
     void load(const PairSet& set) override {
         frames_.assign(2 * set.cases.size(), {});
         for (size_t i = 0; i < set.cases.size(); ++i) {

@@ -1,6 +1,7 @@
 // What is measured: pairs of convex shapes at known distances, and what measures it.
 #pragma once
 
+#include <ctime>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,6 +37,8 @@ public:
     virtual void load(const PairSet& set) = 0;
     virtual void rewind() {}                      // before each round, not measured
     virtual bool moved() const { return false; }  // answers for the moved poses
+    // m; an answer that is off by more has failed.
+    virtual double allowed() const { return 1e-3; }
     // Distances or depths as the truth has them; not a number where it says that it has failed.
     virtual void run(std::vector<double>& answers) = 0;
 };
@@ -75,5 +78,8 @@ struct RayScene {
 std::vector<double> bullet_rays(const RayScene& scene, int repeats, std::vector<double>& fractions);
 
 double median_of(std::vector<double> values);
+
+// Time that this program has computed, ns: what others do on the machine meanwhile does not count.
+inline double computing_time() { return 1e9 / static_cast<double>(CLOCKS_PER_SEC) * static_cast<double>(std::clock()); }
 
 }  // namespace lendulet::bench

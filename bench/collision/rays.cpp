@@ -1,5 +1,4 @@
 // Rays into a settled pile of boxes: the batched call, the single one, and Bullet's.
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -11,18 +10,16 @@
 namespace lendulet::bench {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using scenes::Random;
 
 template <class Run>
 double time_of(size_t rays, Run&& run) {
-    auto start = Clock::now();
+    const double start = computing_time();
     run();
-    std::chrono::duration<double, std::nano> took = Clock::now() - start;
-    return took.count() / static_cast<double>(rays);
+    return (computing_time() - start) / static_cast<double>(rays);
 }
 
-// From points around and above the pile to points in it.
+// From points above the pile, within its container, through points in it.
 void make_rays(const World& world, int count, std::vector<Ray>& rays, RayScene& scene) {
     Vec3 lower{1e9f, 1e9f, 1e9f}, upper = -lower;
     for (int i = 0; i < world.body_count(); ++i) {
@@ -38,8 +35,8 @@ void make_rays(const World& world, int count, std::vector<Ray>& rays, RayScene& 
         return middle + multiply(half, Vec3{x, y, z});
     };
     for (int i = 0; i < count; ++i) {
-        Vec3 from = within(1.5f), to = within(1.0f);
-        from.y = absolute(from.y) + upper.y;
+        Vec3 from = within(0.95f), to = within(0.95f);
+        from.y = upper.y + 1.0f + absolute(from.y);
         rays.push_back({at(from), 1.5f * (to - from), 1.0f});
         scene.from.push_back(from);
         scene.to.push_back(from + rays.back().translation);
@@ -62,7 +59,7 @@ void add_boxes(const World& world, RayScene& scene) {
 }  // namespace
 
 void measure_rays(int count, int bodies, int repeats, CollisionRows& rows) {
-    Scene pile = make_scene("box_pile:" + std::to_string(bodies)).value();
+    Scene pile = build_scene("box_pile:" + std::to_string(bodies)).value();
     for (int i = 0; i < 240; ++i) pile.world.update(pile.dt).value();
     std::vector<Ray> rays;
     RayScene scene;

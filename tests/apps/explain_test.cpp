@@ -55,7 +55,7 @@ TEST(Explain, FramesAreTheSteps) {
         long files = std::count(outcome.out.begin(), outcome.out.end(), '\n');
         EXPECT_GE(files, 3);
         std::string last = svg.substr(0, svg.size() - 4) + "-" + std::to_string(files) + ".svg";
-        EXPECT_NE(content(last).find("is 0.8"), std::string::npos) << content(last).substr(0, 600);
+        EXPECT_NE(content(last).find("O is 0.8"), std::string::npos) << content(last).substr(0, 600);
     }
 }
 

@@ -2,6 +2,9 @@
 // thesis compared them: area and corners of the intersection.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "collision/clip.h"
 #include "gjk_fixture.h"
 

@@ -1,5 +1,11 @@
 // Distances and depths beside FCL (https://github.com/flexible-collision-library/fcl, in Debian libfcl-dev), in double.
-// FCL ends where it likes and is sometimes wrong: where the two differ, the certificate tells whose answer stands.
+// Apart the two agree. Overlapping, FCL prefers faces of boxes, and of hulls it finds the least depth in six cases of ten
+// only: ours is certified in every case, and FCL must never find a shorter way out.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
 #include "gjk_fixture.h"
 
 #ifdef LENDULET_TEST_FCL
@@ -51,6 +57,7 @@ void compare(const char* name, int count, double least_apart, double least_overl
     Random random(41);
     Tally tally(name);
     Agreement apart, overlapping;
+    int shallower = 0;  // ways out that FCL finds and we do not
     const fcl::Transform3d still = fcl::Transform3d::Identity();
     for (int i = 0; i < count; ++i) {
         Core a = make_core(random), b = make_core(random);
@@ -71,21 +78,23 @@ void compare(const char* name, int count, double least_apart, double least_overl
             fcl::collide(fa.get(), still, fb.get(), transform_of(t), request, result);
             double depth = result.isCollision() ? std::abs(result.getContact(0).penetration_depth) : 0.0;
             overlapping.count(ours.distance, -depth, 2.0);
+            shallower += depth < -ours.distance - 2e-5 * 2.0;
         }
     }
     EXPECT_GE(apart.share(), least_apart) << name;
     EXPECT_GE(overlapping.share(), least_overlapping) << name;
+    EXPECT_EQ(shallower, 0) << name;
     if (std::getenv("LENDULET_TEST_REPORT"))
-        std::printf("%s: FCL agrees in %d of %d apart, %d of %d overlapping\n", name, apart.same,
-                    apart.same + apart.other, overlapping.same, overlapping.same + overlapping.other);
+        std::printf("%s: FCL agrees in %d of %d apart, %d of %d overlapping, %d shallower\n", name, apart.same,
+                    apart.same + apart.other, overlapping.same, overlapping.same + overlapping.other, shallower);
 }
 
 TEST(FclOracle, BoxesAgree) {
-    compare("boxes beside FCL", cases(10000), 0.99, 0.95, [](Random& random) { return random_box(random, 1.0f); });
+    compare("boxes beside FCL", cases(10000), 0.999, 0.8, [](Random& random) { return random_box(random, 1.0f); });
 }
 
 TEST(FclOracle, HullsAgree) {
-    compare("hulls beside FCL", cases(2000), 0.99, 0.5, [](Random& random) { return random_hull(random, 1.0f, 32); });
+    compare("hulls beside FCL", cases(2000), 0.999, 0.4, [](Random& random) { return random_hull(random, 1.0f, 32); });
 }
 
 #else

@@ -38,7 +38,7 @@ float about(Random& random, float touching) {
 }
 
 TEST(GjkDegenerate, FacesTouchingAndCoplanar) {
-    run_class("faces touching", cases(1000), [](Random& random) {
+    run_class("faces touching", cases(10000), [](Random& random) {
         Case c{random_box(random, 1), random_box(random, 1), {{}, no_turn}};
         int i = random.integer(3), j = (i + 1) % 3;
         set_component(c.t.translation, i,
@@ -51,7 +51,7 @@ TEST(GjkDegenerate, FacesTouchingAndCoplanar) {
 }
 
 TEST(GjkDegenerate, EdgesAndCornersMeeting) {
-    run_class("edges and corners", cases(1000), [](Random& random) {
+    run_class("edges and corners", cases(10000), [](Random& random) {
         Case c{random_box(random, 1), random_box(random, 1), {{}, quarter_turns(random)}};
         Vec3 b = absolute(rotate(c.t.rotation, c.b.geometry.size)), a = c.a.geometry.size;
         int features = 2 + random.integer(2);  // edge on edge, corner on corner
@@ -62,7 +62,7 @@ TEST(GjkDegenerate, EdgesAndCornersMeeting) {
 }
 
 TEST(GjkDegenerate, CrossingEdgesAtRightAngles) {
-    run_class("edges crossing", cases(1000), [](Random& random) {
+    run_class("edges crossing", cases(10000), [](Random& random) {
         // Both boxes stand on an edge, the edges cross above each other.
         Core a = make_box({0.5f, 0.5f, random.uniform(0.5f, 2)}), b = make_box({random.uniform(0.5f, 2), 0.5f, 0.5f});
         const float h = 0.38268343f, g = 0.92387953f;  // an eighth of a turn
@@ -73,7 +73,7 @@ TEST(GjkDegenerate, CrossingEdgesAtRightAngles) {
 }
 
 TEST(GjkDegenerate, PointsOnFacesEdgesAndCorners) {
-    run_class("points on features", cases(1000), [](Random& random) {
+    run_class("points on features", cases(10000), [](Random& random) {
         Case c{random_box(random, 1), make_point(), {{}, random.rotation()}};
         Vec3 h = c.a.geometry.size;
         for (int i = 0; i < 3; ++i) {
@@ -86,7 +86,7 @@ TEST(GjkDegenerate, PointsOnFacesEdgesAndCorners) {
 }
 
 TEST(GjkDegenerate, SamePlaceSameShape) {
-    run_class("same centre", cases(1000), [](Random& random) {
+    run_class("same centre", cases(10000), [](Random& random) {
         Core a = random.integer(2) ? random_box(random, 1) : random_hull(random, 1, 16);
         Core b = random.integer(2) ? a : random_box(random, random.integer(2) ? 1.0f : 0.1f);
         return Case{a, b, {{}, random.integer(2) ? no_turn : random.rotation()}};
@@ -94,14 +94,14 @@ TEST(GjkDegenerate, SamePlaceSameShape) {
 }
 
 TEST(GjkDegenerate, OneInsideTheOther) {
-    run_class("inside", cases(1000), [](Random& random) {
+    run_class("inside", cases(10000), [](Random& random) {
         Core a = make_box({1, 1, 1}), b = random_box(random, 0.2f);
         return Case{a, b, {0.5f * random.uniform(0, 1) * random.direction(), random.rotation()}};
     });
 }
 
 TEST(GjkDegenerate, Slivers) {
-    run_class("slivers", cases(1500), [](Random& random) {
+    run_class("slivers", cases(10000), [](Random& random) {
         auto sliver = [&] {
             Vec3 half{random.uniform(0.5f, 1), random.uniform(0.5f, 1), random.uniform(0.5f, 1)};
             set_component(half, random.integer(3), 1e-4f);
@@ -115,7 +115,7 @@ TEST(GjkDegenerate, Slivers) {
 }
 
 TEST(GjkDegenerate, TinyAgainstHuge) {
-    run_class("tiny on huge", cases(1000), [](Random& random) {
+    run_class("tiny on huge", cases(10000), [](Random& random) {
         Core a = make_box({1e4f, 1e4f, random.integer(2) ? 1e4f : 1e-3f}), b = random_box(random, 1e-3f);
         float by[4] = {1.0f, 1e-3f, 0.0f, -3e-4f};
         Transform t = place(random, a, b, by[random.integer(4)]);
@@ -125,7 +125,7 @@ TEST(GjkDegenerate, TinyAgainstHuge) {
 }
 
 TEST(GjkDegenerate, FlatHullsNeedlesAndPoints) {
-    run_class("flat cores", cases(2000), [](Random& random) {
+    run_class("flat cores", cases(10000), [](Random& random) {
         auto flat = [&] {
             std::vector<Vec3> points;
             int count = 1 + random.integer(3);
@@ -163,7 +163,7 @@ TEST(GjkDegenerate, DuplicateAndInteriorPoints) {
 }
 
 TEST(GjkDegenerate, NearlyParallelFaces) {
-    run_class("nearly parallel", cases(2000), [](Random& random) {
+    run_class("nearly parallel", cases(10000), [](Random& random) {
         Core a = random_box(random, 1), b = random_box(random, 1);
         float tilt = random.log_uniform(1e-7f, 1e-3f);
         Transform t{{random.uniform(-0.3f, 0.3f), 0, random.uniform(-0.3f, 0.3f)},
@@ -174,7 +174,7 @@ TEST(GjkDegenerate, NearlyParallelFaces) {
 }
 
 TEST(GjkDegenerate, DenormalAndSignedZeroOffsets) {
-    run_class("denormal offsets", cases(500), [](Random& random) {
+    run_class("denormal offsets", cases(10000), [](Random& random) {
         const float tiny[6] = {0.0f, -0.0f, 1e-45f, -1e-40f, 1e-38f, 1e-30f};
         Core a = random_box(random, 1), b = random.integer(2) ? a : random_box(random, 1);
         Transform t{{}, random.integer(2) ? no_turn : random.rotation()};

@@ -162,7 +162,7 @@ TEST(GjkMetamorphic, EndsEarlyOnlyBeyondTheLimit) {
 TEST(GjkSequence, WarmAndColdAgreeAlongAPath) {
     Random random(28);
     long warm_iterations = 0, frames_apart = 0;
-    for (int n = 0; n < cases(100); ++n) {
+    for (int n = 0; n < cases(1000); ++n) {
         bool boxes = n % 2 == 0;
         Core a = boxes ? random_box(random, 1) : random_core(random),
              b = boxes ? random_box(random, 1) : random_core(random);

@@ -137,43 +137,129 @@ Vec shortest(const Body& a, const Body& b) {
     Pair pair;
     for (Vec p : a.corners)
         for (Vec q : b.corners) pair.offer(q - p);
-    for (auto [i, j] : a.edges)
-        for (auto [k, l] : b.edges)
+    // Two edges whose balls are farther apart than what was found already have nothing to offer.
+    struct Ball {
+        Vec centre;
+        Real radius;
+    };
+    auto balls = [](const Body& body) {
+        std::vector<Ball> out;
+        for (auto [i, j] : body.edges) {
+            Vec half = Real(0.5L) * (body.corners[j] - body.corners[i]);
+            out.push_back({body.corners[i] + half, 1.0000001L * norm(half)});
+        }
+        return out;
+    };
+    const std::vector<Ball> of_a = balls(a), of_b = balls(b);
+    for (size_t e = 0; e < a.edges.size(); ++e)
+        for (size_t f = 0; f < b.edges.size(); ++f) {
+            Vec between = of_b[f].centre - of_a[e].centre;
+            Real reach = of_a[e].radius + of_b[f].radius + std::sqrt(pair.squared);
+            if (dot(between, between) > reach * reach) continue;
+            auto [i, j] = a.edges[e];
+            auto [k, l] = b.edges[f];
             offer_segments(pair, a.corners[i], a.corners[j] - a.corners[i], b.corners[k], b.corners[l] - b.corners[k]);
-    for (auto [i, j] : a.edges)
-        for (Vec q : b.corners) offer_segments(pair, a.corners[i], a.corners[j] - a.corners[i], q, {});
-    for (auto [k, l] : b.edges)
-        for (Vec p : a.corners) offer_segments(pair, p, {}, b.corners[k], b.corners[l] - b.corners[k]);
+        }
+    // Corners are ends of edges, but for single points.
+    if (b.edges.empty())
+        for (auto [i, j] : a.edges)
+            for (Vec q : b.corners) offer_segments(pair, a.corners[i], a.corners[j] - a.corners[i], q, {});
+    if (a.edges.empty())
+        for (auto [k, l] : b.edges)
+            for (Vec p : a.corners) offer_segments(pair, p, {}, b.corners[k], b.corners[l] - b.corners[k]);
     Vec d;
+    auto far = [&](const Body& body, const Body::Triangle& t, Vec p) {
+        Real height = dot(t.normal, p - body.corners[t.corner[0]]);
+        return height * height > 1.0000001L * pair.squared;
+    };
     for (const auto& t : b.triangles)
         for (Vec p : a.corners)
-            if (to_triangle(b, t, p, d)) pair.offer(d);
+            if (!far(b, t, p) && to_triangle(b, t, p, d)) pair.offer(d);
     for (const auto& t : a.triangles)
         for (Vec q : b.corners)
-            if (to_triangle(a, t, q, d)) pair.offer(Real(-1) * d);
+            if (!far(a, t, q) && to_triangle(a, t, q, d)) pair.offer(Real(-1) * d);
     return pair.difference;
 }
 
 }  // namespace
 
+namespace {
+
+// Directions of edges, each once.
+std::vector<Vec> edge_directions(const Body& body) {
+    std::vector<Vec> out;
+    for (auto [i, j] : body.edges) {
+        Vec d = body.corners[j] - body.corners[i];
+        Real size = norm(d);
+        if (!(size > 0)) continue;
+        d = (1 / size) * d;
+        bool known = false;
+        for (Vec e : out) known = known || norm(cross(d, e)) < 1e-17L;
+        if (!known) out.push_back(d);
+    }
+    return out;
+}
+
+int farthest(const Body& body, Vec n) {
+    int best = 0;
+    Real most = dot(body.corners[0], n);
+    for (int i = 1; i < static_cast<int>(body.corners.size()); ++i) {
+        Real along = dot(body.corners[i], n);
+        if (along > most) most = along, best = i;
+    }
+    return best;
+}
+
+// Separations along directions from A to B. Any corner of each bounds them from above: most directions need no more
+// than those of a few directions before to be known to be worse, by more than what a tie is judged by.
+struct Separations {
+    const Body &a, &b;
+    std::vector<std::pair<Real, Vec>> candidates;
+    Real best = -1e300L, tie = 0;
+    static constexpr int remembered = 8;
+    Vec between[remembered];  // corners of A and B
+    int used = 0, next = 0;
+
+    Separations(const Body& first, const Body& second) : a(first), b(second) {
+        for (const Body* body : {&a, &b})
+            for (Vec p : body->corners) tie = std::max(tie, norm(p - body->corners[0]));
+        tie *= 1e-2L;
+    }
+    void offer(Vec n) {
+        for (int i = 0; i < used; ++i)
+            if (dot(between[i], n) < best - tie) return;
+        int i = farthest(a, n), k = farthest(b, Real(-1) * n);
+        Real separation = dot(b.corners[k] - a.corners[i], n);
+        candidates.push_back({separation, n});
+        best = std::max(best, separation);
+        between[next] = b.corners[k] - a.corners[i];
+        next = (next + 1) % remembered;
+        used = std::max(used, next == 0 ? remembered : next);
+    }
+};
+
+}  // namespace
+
 Answer distance(const Body& a, const Body& b) {
-    std::vector<std::pair<Real, Vec>> candidates;  // separation along each direction from A to B
-    auto offer = [&](Vec n) { candidates.push_back({-support(b, Real(-1) * n) - support(a, n), n}); };
-    for (const auto& t : a.triangles) offer(t.normal);
-    for (const auto& t : b.triangles) offer(Real(-1) * t.normal);
-    for (auto [i, j] : a.edges)
-        for (auto [k, l] : b.edges) {
-            Vec u = a.corners[j] - a.corners[i], v = b.corners[l] - b.corners[k], n = cross(u, v);
+    Separations along(a, b);
+    for (const auto& t : a.triangles) along.offer(t.normal);
+    for (const auto& t : b.triangles) along.offer(Real(-1) * t.normal);
+    const std::vector<Vec> of_a = edge_directions(a), of_b = edge_directions(b);
+    for (Vec u : of_a)
+        for (Vec v : of_b) {
+            if (along.best > along.tie) break;  // apart: the nearest features tell
+            Vec n = cross(u, v);
             Real length = norm(n);
-            if (!(length > 1e-12L * norm(u) * norm(v))) continue;
+            if (!(length > 1e-12L)) continue;
             n = (1 / length) * n;
-            offer(n);
-            offer(Real(-1) * n);
+            along.offer(n);
+            along.offer(Real(-1) * n);
         }
+    const auto& candidates = along.candidates;
     Answer answer{-1e300L, {0, 1, 0}, -1e300L};
-    for (auto& [separation, n] : candidates)
+    for (const auto& [separation, n] : candidates)
         if (separation > answer.distance) answer.distance = separation, answer.normal = n;
-    for (auto& [separation, n] : candidates)
+    for (const auto& [separation, n] : candidates)
         if (dot(n, answer.normal) < std::cos(3.14159265L / 180))
             answer.runner_up = std::max(answer.runner_up, separation);
     // A flat difference never separates by more than rounding, though the bodies may be apart within its plane.

@@ -7,7 +7,6 @@
 #include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
 #include <BulletCollision/NarrowPhaseCollision/btPointCollector.h>
 
-#include <chrono>
 #include <limits>
 
 #include "bench/collision/pairs.h"
@@ -115,15 +114,14 @@ std::vector<double> bullet_rays(const RayScene& scene, int repeats, std::vector<
     fractions.assign(scene.from.size(), 2.0);
     std::vector<double> times;
     for (int round = 0; round < repeats; ++round) {
-        auto start = std::chrono::steady_clock::now();
+        const double start = computing_time();
         for (size_t i = 0; i < scene.from.size(); ++i) {
             const btVector3 from = vector_of(scene.from[i]), to = vector_of(scene.to[i]);
             btCollisionWorld::ClosestRayResultCallback hit(from, to);
             world.rayTest(from, to, hit);
             fractions[i] = hit.hasHit() ? hit.m_closestHitFraction : 2.0;
         }
-        std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - start;
-        times.push_back(took.count() / static_cast<double>(scene.from.size()));
+        times.push_back((computing_time() - start) / static_cast<double>(scene.from.size()));
     }
     for (auto& object : objects) world.removeCollisionObject(object.get());
     return times;
