@@ -5,7 +5,7 @@ import { EngineStopped } from "./engine/wasi";
 import { type Command, Refused, type World } from "./engine/types";
 import { type Deed, Player } from "./player";
 import { Pointer, vector } from "./pointer";
-import { titleOf } from "./scenes";
+import { followedIn, titleOf } from "./scenes";
 import type { Sources } from "./sources";
 import { element } from "./ui/dom";
 import { Figures } from "./ui/figures";
@@ -44,6 +44,8 @@ export class App {
     private lastFigures = 0;
     private lastLink = 0;
     private openings = 0;
+    private followed = -1; // the body that the camera goes along with, or -1
+    private followedAt: THREE.Vector3 | null = null;
     private slow = 0; // looks at the rate of frames that were too few, one after the other
 
     constructor(readonly sources: Sources, readonly stage: Stage) {
@@ -138,6 +140,12 @@ export class App {
 
     private rebuild(otherScene: boolean): void {
         const shapes = this.player.world.shapes();
+        if (otherScene) {
+            const name = followedIn(this.player.sceneName.split(":")[0]);
+            this.followed = -1;
+            for (let i = 0; name && i < shapes.bodies; ++i) if (shapes.name(i) === name) this.followed = i;
+            this.followedAt = null;
+        }
         this.bodies.build(shapes, otherScene);
         if (otherScene) this.structure.forget();
         const { twin } = this.player;
@@ -291,6 +299,7 @@ export class App {
         // Lists of a stream come a little later than what they are drawn with.
         const late = world.kind === "native" && (this.structure.any || this.contacts || this.colours === "island");
         const fresh = this.dirty || step !== this.drawnStep || late;
+        this.follow();
         const moved = this.stage.update();
         // What stands still is not drawn again.
         if (!fresh && !moved && share === this.drawnShare && !this.pointer.active) return;
@@ -302,6 +311,19 @@ export class App {
         this.dirty = false;
         this.pointer.draw();
         this.stage.render();
+    }
+    // The camera goes where the followed body goes, up and down at most half as far.
+    private follow(): void {
+        const { before, now, share } = this.player.picture, at = 8 * this.followed;
+        if (this.followed < 0 || at >= Math.min(before.length, now.length)) return;
+        const place = new THREE.Vector3().fromArray(before, at).lerp(new THREE.Vector3().fromArray(now, at), share);
+        if (this.followedAt) {
+            const way = place.clone().sub(this.followedAt);
+            way.y *= 0.5;
+            this.stage.camera.position.add(way);
+            this.stage.controls.target.add(way);
+        }
+        this.followedAt = place;
     }
     private drawFresh(now: Float32Array, past: boolean): void {
         const { world, twin } = this.player, grouped = this.colours === "island" || this.colours === "colour";

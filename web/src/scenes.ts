@@ -5,6 +5,7 @@ import table from "./scenes.json";
 interface Shown {
     title?: string;
     size?: number;
+    follow?: string; // name of the body that the camera goes along with
 }
 
 export const groups = table as unknown as { title: string; scenes: Record<string, Shown> }[];
@@ -17,6 +18,9 @@ export function titleOf(name: string): string {
 }
 export function sizeOf(name: string, engineSize: number): number {
     return shown.get(name)?.size ?? engineSize;
+}
+export function followedIn(name: string): string | undefined {
+    return shown.get(name)?.follow;
 }
 export function isListed(name: string): boolean {
     return shown.has(name);

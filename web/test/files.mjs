@@ -5,6 +5,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
+const wide = { viewport: { width: 1120, height: 420 } }; // both panels are seen
 const until = (page, condition, argument = null) => page.waitForFunction(condition, argument, { polling: 50 });
 
 // Drops a file onto the page, as a hand would.
@@ -51,7 +52,7 @@ export const fileChecks = {
     }) {
         const folder = mkdtempSync(join(tmpdir(), "lendulet-"));
         try {
-            const page = await open({ acceptDownloads: true }, "?shadows=0#scene=convex_pile:30&paused=1");
+            const page = await open({ ...wide, acceptDownloads: true }, "?shadows=0#scene=convex_pile:30&paused=1");
             await page.click("#record");
             await steps(page, 20);
             await page.evaluate(() => window.lendulet.shoot(300, 200));
@@ -87,7 +88,7 @@ export const fileChecks = {
     },
 
     async "files: a repro file and an address make the same run again"({ open }) {
-        const page = await open({ acceptDownloads: true }, "?shadows=0#scene=wall_ball:4&paused=1");
+        const page = await open({ ...wide, acceptDownloads: true }, "?shadows=0#scene=wall_ball:4&paused=1");
         await steps(page, 15);
         await page.click("#drop");
         await steps(page, 10);
@@ -110,7 +111,7 @@ export const fileChecks = {
     },
 
     async "settings change while the world runs, and rewinding goes back to the old ones"({ open }) {
-        const page = await open({}, "?shadows=0#scene=stack:4&paused=1");
+        const page = await open(wide, "?shadows=0#scene=stack:4&paused=1");
         const base = await steps(page, 40);
         await page.fill("#set-gravity", "-3");
         await page.press("#set-gravity", "Enter");
@@ -133,7 +134,7 @@ export const fileChecks = {
     },
 
     async "a fork keeps the bits until something is done to one of the two"({ open }) {
-        const page = await open({}, "?shadows=0#scene=large_pyramid:5&paused=1");
+        const page = await open(wide, "?shadows=0#scene=large_pyramid:5&paused=1");
         await steps(page, 20);
         await page.click("#fork");
         await steps(page, 30);
@@ -156,7 +157,7 @@ export const fileChecks = {
     },
 
     async "the engine's own structures are drawn: boxes, levels, intervals, joints, momenta, islands, colours"({ open }) {
-        const page = await open({}, "?shadows=0#scene=ragdolls:4&paused=1");
+        const page = await open(wide, "?shadows=0#scene=ragdolls:4&paused=1");
         await steps(page, 70);
         const lines = () => page.evaluate(() => {
             window.lendulet.frame();

@@ -66,7 +66,7 @@ const until = (page, condition, argument = null) => page.waitForFunction(conditi
 export const nativeChecks = {
     async "native: the page shows a native world, and what is done by hand acts in it"({ open, program, folder }) {
         const native = await startNative(program, folder, "large_pyramid:6");
-        const page = await open({}, "?shadows=0#paused=1", native.url);
+        const page = await open({ viewport: { width: 1120, height: 420 } }, "?shadows=0#paused=1", native.url);
         await until(page, () => window.lendulet.player.world?.kind === "native");
         const base = await page.evaluate(() => window.lendulet.player.now.length / 8);
         assert.equal(base, 22);
