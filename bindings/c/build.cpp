@@ -14,44 +14,51 @@ lendulet_result keep(lendulet_world& world, Shape shape) {
     return static_cast<lendulet_result>(world.given.size() - 1);
 }
 
-Result<Shape> given_shape(const lendulet_world& world, const lendulet_part& p) {
+Status set_given_shape(const lendulet_world& world, const lendulet_part& p, Shape& out) {
     const size_t index = static_cast<size_t>(p.mesh);
     const bool there = p.mesh >= 0 && index < world.given.size();
-    if (p.type == LENDULET_HULL && there && std::holds_alternative<ConvexHull>(world.given[index]))
-        return world.given[index];
-    if (p.type == LENDULET_MESH && there && std::holds_alternative<TriangleMesh>(world.given[index]))
-        return world.given[index];
+    if ((p.type == LENDULET_HULL && there && std::holds_alternative<ConvexHull>(world.given[index])) ||
+        (p.type == LENDULET_MESH && there && std::holds_alternative<TriangleMesh>(world.given[index]))) {
+        out = world.given[index];
+        return {};
+    }
     return Error{ErrorCode::bad_mesh, "add_body: there is no such hull or mesh"};
 }
 
-Result<Shape> shape_of(const lendulet_world& world, const lendulet_part& p) {
+Status set_shape(const lendulet_world& world, const lendulet_part& p, Shape& out) {
     const float *s = p.size, r = p.rounding;
     switch (p.type) {
         case LENDULET_SPHERE:
-            return Shape{Sphere{s[0]}};
+            out = Sphere{s[0]};
+            return {};
         case LENDULET_CAPSULE:
-            return Shape{Capsule{s[0], s[1]}};
+            out = Capsule{s[0], s[1]};
+            return {};
         case LENDULET_TAPERED_CAPSULE:
-            return Shape{TaperedCapsule{s[0], s[1], s[2]}};
+            out = TaperedCapsule{s[0], s[1], s[2]};
+            return {};
         case LENDULET_BOX:
-            return Shape{Box{vector(s), r}};
+            out = Box{vector(s), r};
+            return {};
         case LENDULET_CYLINDER:
-            return Shape{Cylinder{s[0], s[1], r}};
+            out = Cylinder{s[0], s[1], r};
+            return {};
         case LENDULET_TAPERED_CYLINDER:
-            return Shape{TaperedCylinder{s[0], s[1], s[2], r}};
+            out = TaperedCylinder{s[0], s[1], s[2], r};
+            return {};
         case LENDULET_CONE:
-            return Shape{Cone{s[0], s[1], r}};
+            out = Cone{s[0], s[1], r};
+            return {};
         case LENDULET_PLANE:
-            return Shape{Plane{vector(s), s[3]}};
+            out = Plane{vector(s), s[3]};
+            return {};
         default:
-            return given_shape(world, p);
+            return set_given_shape(world, p, out);
     }
 }
 
 Status read_part(const lendulet_world& world, const lendulet_part& p, ColliderDef& def) {
-    Result<Shape> shape = shape_of(world, p);
-    if (!shape) return shape.error();
-    def.shape = std::move(shape).value();
+    if (Status s = set_shape(world, p, def.shape); !s) return s;
     def.local = frame(p.position, p.orientation);
     def.density = p.density;
     def.is_trigger = p.trigger != 0;

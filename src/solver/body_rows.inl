@@ -104,12 +104,16 @@ LENDULET_FORCE_INLINE QuatT<F> normalized(QuatT<F> q) {
     return {s * q.x, s * q.y, s * q.z, s * q.w};
 }
 
-inline constexpr int max_turn_parts = 32;
+inline constexpr int max_turn_parts = 128;
+inline constexpr float most_wish = 0.25f;  // of a part
+inline constexpr float quick = 0.2f;       // from here on 6 iterations
 
 // Turns dq q0 over h at constant L. The fixed point of the midpoint rule contracts by h |w| anisotropy / 2 an
-// iteration, so fast and slender bodies are turned in parts, and slow ones need fewer than the four iterations: as many
-// as leave an error below 1e-7 rad. Kinematic lanes (no inertia) turn with their given w. What a lane does never
-// depends on its neighbours; only work that no lane of a block asks for is left out.
+// iteration, a quarter of the wish below, so fast and slender bodies are turned in parts and with more iterations, and
+// slow ones need fewer than four: as many as leave an error below 1e-7 rad. How many parts must not change with |w| as
+// a body tumbles: the rule keeps energy because it is the same backwards, and with parts that came and went a box at
+// 100 rad/s about its middle axis gained 3 % of it in a minute. Kinematic lanes (no inertia) turn with their given w.
+// What a lane does never depends on its neighbours; only work that no lane of a block asks for is left out.
 template <int W>
 LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float, W>> dq, QuatT<Wide<float, W>> q0,
                                                                Vec3T<Wide<float, W>> L, Vec3T<Wide<float, W>> inverse,
@@ -121,9 +125,15 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
     F wish = splat<F>(2.0f * h) * square_root(dot(w, w)) * anisotropy;
     F iterations = select(wish > splat<F>(0.01f), select(wish > splat<F>(0.05f), four, splat<F>(2.0f)), one);
     iterations = select(anisotropy <= one, zero, iterations);  // about a fixed axis L gives the velocity at once
-    F parts = one;                                             // smallest power of two above the wish
-    if (mask_bits(wish > one))
-        for (int i = 1; i < max_turn_parts; i *= 2) parts = select(wish > parts, parts + parts, parts);
+    F parts = one;
+    if (mask_bits(wish > splat<F>(quick))) {
+        // |L| and the least moment do not change while it tumbles, |w| does.
+        F most = maximum(maximum(inverse.x, inverse.y), inverse.z);
+        F steady = select(given, wish, splat<F>(2.0f * h) * square_root(dot(L, L)) * most);
+        iterations = select(steady > splat<F>(quick), select(anisotropy > one, splat<F>(6.0f), zero), iterations);
+        for (int i = 1; i < max_turn_parts; i *= 2)
+            parts = select(steady > splat<F>(most_wish) * parts, parts + parts, parts);
+    }
     F step = splat<F>(h) / parts;
     QuatT<F> q = dq;
     for (float part = 0.0f; mask_bits(splat<F>(part) < parts); part += 1.0f) {

@@ -35,7 +35,7 @@ void roll_group(const ContactGroup& g, SolverBodies& bodies, int begin, int end)
 }
 template <int W, Pass pass>
 void pass_group(const ContactGroup& g, SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
-    if (pass != Pass::solve && g.rolling) roll_group<W, pass == Pass::warm_start>(g, bodies, begin, end);
+    if (pass != Pass::relax && g.rolling) roll_group<W, pass == Pass::warm_start>(g, bodies, begin, end);
     if (g.points == 1) run_pass<W, 1, pass>(g, bodies, k, begin, end);
     else if (g.points == 2) run_pass<W, 2, pass>(g, bodies, k, begin, end);
     else run_pass<W, 4, pass>(g, bodies, k, begin, end);

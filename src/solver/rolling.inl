@@ -6,7 +6,9 @@
 // first, and take what they can of it within their limits: the torque is the same for both bodies, so L is conserved.
 //
 // The contacts of a group whose rows have this come with a second row each, so that all others keep their kernels. It
-// is solved before friction, whose slip is to be zero at the end of the pass.
+// is solved before the contact's own in the biased pass, when the normal impulses are those of the last relax pass:
+// their mean is the load, which that of a biased pass is not quite. Friction comes after it, so that slip is zero at
+// the end.
 
 template <int W>
 struct alignas(64) RollingRow {
