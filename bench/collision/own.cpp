@@ -64,8 +64,9 @@ private:
     std::vector<GjkCache> caches_;
 };
 
-// Manifolds prefer a face to a pair of edges that is less deep by up to 0.5 % of the smallest half extent, at most 1 m.
-constexpr double preference = 6e-3;
+// Manifolds prefer a face to a pair of edges that is less deep by up to 0.5 % of the smallest half extent (at most 1
+// m), and those of hulls take the normal of a face that looks within 3.5 degrees along the shortest way out.
+constexpr double preference = 1e-2;
 
 double deepest(const Manifold& m) {
     float d = m.points[0].separation;

@@ -159,7 +159,12 @@ std::vector<PairSet> make_pair_sets(int pairs) {
     std::vector<PairSet> sets;
     for (const Regime& regime : regimes) sets.push_back(make_set("box-box", regime, pairs, random_box));
     const int hulls = pairs / 5 > 16 ? pairs / 5 : 16;
-    for (int i : {0, 4}) sets.push_back(make_set("hull32", regimes[i], i == 0 ? hulls : (hulls + 3) / 4, random_hull));
+    std::vector<Shape> stock;
+    auto from_stock = [&](Random& random) {
+        while (stock.size() < 64) stock.push_back(random_hull(random));
+        return stock[random.next() % stock.size()];
+    };
+    for (int i : {0, 4}) sets.push_back(make_set("hull32", regimes[i], i == 0 ? hulls : (hulls + 3) / 4, from_stock));
     return sets;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <ctime>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,7 +25,8 @@ struct PairSet {
 };
 
 // Boxes with half extents from 0.25 to 1 m: far (0.1 to 2 m apart), near (1e-4 to 1e-2 m), touching, overlapping by 1
-// to 50 mm and by 0.1 to 0.5 m; hulls of 32 points on a ball of a metre, far and deep.
+// to 50 mm and by 0.1 to 0.5 m; hulls of 32 points on a ball of a metre, drawn from 64 of
+// them, far and deep.
 std::vector<PairSet> make_pair_sets(int pairs);
 
 // A routine that answers all pairs of a set one after the other.
@@ -76,6 +78,25 @@ struct RayScene {
 };
 // Times in ns a ray, one for each round, and fractions of the hits.
 std::vector<double> bullet_rays(const RayScene& scene, int repeats, std::vector<double>& fractions);
+
+// Hulls that several pairs share are shared by those that measure, too, as engines do: make(shape) is called once for
+// each, and for each box.
+template <class T>
+class SharedShapes {
+public:
+    void clear() { hulls_.clear(); }
+    template <class Make>
+    std::shared_ptr<T> of(const Shape& shape, Make&& make) {
+        const auto* hull = std::get_if<ConvexHull>(&shape);
+        if (!hull) return make(shape);
+        std::shared_ptr<T>& made = hulls_[&hull->data()];
+        if (!made) made = make(shape);
+        return made;
+    }
+
+private:
+    std::map<const void*, std::shared_ptr<T>> hulls_;
+};
 
 double median_of(std::vector<double> values);
 

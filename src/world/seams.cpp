@@ -63,25 +63,34 @@ float rise_of(const WorldData& world, const Touch& t, Vec3 direction) {
     return dot(direction, at) + maximum(dot(local, p[0]), maximum(dot(local, p[1]), dot(local, p[2])));
 }
 
-// Whether F's plane is above the piece of E, whose points are in it.
-bool covers(const WorldData& world, const Touch& f, const Touch& e, float level, float radius) {
-    const ContactRecord &rf = world.records[f.record], &re = world.records[e.record];
-    const Vec3 n = normal_of(rf);
-    const float along = dot(n, normal_of(re));
-    if (along < -level_of_depth || length_squared(cross(n, normal_of(re))) < same_normal * same_normal) return false;
-    float plane = 1e30f, overlap = 0.0f;
-    for (int j = 0; j < rf.point_count; ++j) {
-        plane = minimum(plane, dot(n, surface_point(world, f, j)));
-        overlap = maximum(overlap, -world.found_separations[f.record].s[j]);
+// The plane that a manifold keeps the moved shape above.
+struct Floor {
+    Touch touch;
+    Vec3 normal;
+    float height = 1e30f, overlap = 0.0f;  // along the normal; how deep the shape is below it
+
+    Floor(const WorldData& world, const Touch& t) : touch(t), normal(normal_of(world.records[t.record])) {
+        const int count = world.records[t.record].point_count;
+        for (int j = 0; j < count; ++j) {
+            height = minimum(height, dot(normal, surface_point(world, t, j)));
+            overlap = maximum(overlap, -world.found_separations[t.record].s[j]);
+        }
     }
-    level += rounding * max_component(absolute(e.origin) + absolute(f.origin));
-    const float slack = level + 2.5f * overhang * radius;
-    for (int j = 0; j < re.point_count; ++j) {
-        float height = dot(n, surface_point(world, e, j)) - plane;
-        if (height > slack || height < -slack - overlap) return false;
+    // Whether it is above the piece of E, whose points are in it.
+    bool covers(const WorldData& world, const Touch& e, float level, float radius) const {
+        const ContactRecord& r = world.records[e.record];
+        const Vec3 other = normal_of(r);
+        if (dot(normal, other) < -level_of_depth) return false;
+        if (length_squared(cross(normal, other)) < same_normal * same_normal) return false;
+        level += rounding * max_component(absolute(e.origin) + absolute(touch.origin));
+        const float slack = level + 2.5f * overhang * radius;
+        for (int j = 0; j < r.point_count; ++j) {
+            float above = dot(normal, surface_point(world, e, j)) - height;
+            if (above > slack || above < -slack - overlap) return false;
+        }
+        return rise_of(world, e, normal) - height <= level;
     }
-    return rise_of(world, e, n) - plane <= level;
-}
+};
 
 void silence(ContactRecord& r) {
     for (ContactPointRecord& p : r.points) p.separation = far_separation;
@@ -97,23 +106,27 @@ void silence_pair(WorldData& world, uint32_t number) {
     const uint32_t moved = moved_collider(p);
     const ColliderInfo& info = world.colliders.info[moved];
     const float level = minimum(level_of_radius * info.radius, level_of_depth * info.depth);
-    const bool stands = world.bodies.info[world.colliders.info[fixed_collider(p)].body].type == BodyType::fixed;
-    for (uint32_t i = 0; i < p.count; ++i) {
-        const Touch e = touch_of(world, p, i);
-        bool covered = false;
-        world.pairs.for_each_of(moved, [&](uint32_t other) {
-            const ColliderPair& q = world.pairs.pairs[other];
-            if (covered || !has_floor(q) || moved_collider(q) != moved) return;
-            const BodyInfo& body = world.bodies.info[world.colliders.info[fixed_collider(q)].body];
-            if (other != number && !(stands && body.type == BodyType::fixed)) return;
-            for (uint32_t k = 0; k < q.count && !covered; ++k) {
-                const Touch f = touch_of(world, q, k);
-                covered = f.record != e.record && covers(world, f, e, level, info.radius) &&
-                          !covers(world, e, f, level, info.radius);
+    auto stands = [&](const ColliderPair& q) {
+        return world.bodies.info[world.colliders.info[fixed_collider(q)].body].type == BodyType::fixed;
+    };
+    uint32_t covered = 0;  // bit i: record i of the pair
+    static_assert(max_mesh_manifolds <= 32);
+    world.pairs.for_each_of(moved, [&](uint32_t other) {
+        const ColliderPair& q = world.pairs.pairs[other];
+        if (!has_floor(q) || moved_collider(q) != moved) return;
+        if (other == number ? p.count < 2 : !(stands(p) && stands(q))) return;
+        for (uint32_t k = 0; k < q.count; ++k) {
+            const Floor floor(world, touch_of(world, q, k));
+            for (uint32_t i = 0; i < p.count; ++i) {
+                const Touch e = touch_of(world, p, i);
+                if ((covered >> i & 1) != 0 || floor.touch.record == e.record) continue;
+                if (!floor.covers(world, e, level, info.radius)) continue;
+                if (!Floor(world, e).covers(world, floor.touch, level, info.radius)) covered |= 1u << i;
             }
-        });
-        if (covered) silence(world.records[e.record]);
-    }
+        }
+    });
+    for (uint32_t i = 0; i < p.count; ++i)
+        if ((covered >> i & 1) != 0) silence(world.records[p.first_record + i]);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Distances and depths beside FCL (https://github.com/flexible-collision-library/fcl, in Debian libfcl-dev), in double.
-// Apart the two agree. Overlapping, FCL prefers faces of boxes, and of hulls it finds the least depth in six cases of ten
-// only: ours is certified in every case, and FCL must never find a shorter way out.
+// Apart the two agree. Overlapping, FCL prefers faces of boxes, and of hulls it finds the least depth in six cases of
+// ten only: ours is certified in every case, and FCL must never find a shorter way out.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -21,12 +21,12 @@ btTransform transform_of(const Transform& t) {
     const Quat q = t.rotation;
     return btTransform(btQuaternion(q.x, q.y, q.z, q.w), vector_of(t.translation));
 }
-std::unique_ptr<btConvexShape> shape_of(const Shape& shape) {
-    std::unique_ptr<btConvexShape> out;
+std::shared_ptr<btConvexShape> shape_of(const Shape& shape) {
+    std::shared_ptr<btConvexShape> out;
     if (const auto* box = std::get_if<Box>(&shape)) {
-        out = std::make_unique<btBoxShape>(vector_of(box->half_extents));
+        out = std::make_shared<btBoxShape>(vector_of(box->half_extents));
     } else {
-        auto hull = std::make_unique<btConvexHullShape>();
+        auto hull = std::make_shared<btConvexHullShape>();
         for (Vec3 v : std::get<ConvexHull>(shape).vertices()) hull->addPoint(vector_of(v), false);
         hull->recalcLocalAabb();
         out = std::move(hull);
@@ -39,18 +39,19 @@ class BulletSubject : public Subject {
 public:
     bool takes(const PairSet&) const override { return true; }
     void load(const PairSet& set) override {
-        a_.clear(), b_.clear(), pose_.clear();
+        a_.clear(), b_.clear(), pose_.clear(), shared_.clear();
         overlapping_ = set.overlapping;
         for (const ConvexCase& c : set.cases) {
-            a_.push_back(shape_of(c.a));
-            b_.push_back(shape_of(c.b));
+            a_.push_back(shared_.of(c.a, shape_of));
+            b_.push_back(shared_.of(c.b, shape_of));
             pose_.push_back(transform_of(c.b_in_a));
         }
     }
 
 protected:
     bool overlapping_ = false;
-    std::vector<std::unique_ptr<btConvexShape>> a_, b_;
+    SharedShapes<btConvexShape> shared_;
+    std::vector<std::shared_ptr<btConvexShape>> a_, b_;
     std::vector<btTransform> pose_;
 };
 

@@ -60,8 +60,7 @@ public:
     bool takes(const PairSet& set) const override { return set.overlapping != (routine_ == Routine::intersect); }
     void load(const PairSet& set) override {
         set_ = &set;
-        a_.clear(), b_.clear(), points_.clear();
-        points_.reserve(2 * set.cases.size());
+        a_.clear(), b_.clear(), shared_.clear();
         for (const ConvexCase& c : set.cases) {
             a_.push_back(solid(c.a, {}));
             b_.push_back(solid(c.b, c.b_in_a));
@@ -77,9 +76,13 @@ private:
         if (const auto* box = std::get_if<Box>(&shape)) {
             s.half = box->half_extents;
         } else {
-            const auto& hull = std::get<ConvexHull>(shape);
-            points_.emplace_back(hull.vertices().begin(), hull.vertices().end());
-            s.points = &points_.back();
+            s.points = shared_
+                           .of(shape,
+                               [](const Shape& hull) {
+                                   auto corners = std::get<ConvexHull>(hull).vertices();
+                                   return std::make_shared<std::vector<Vec3>>(corners.begin(), corners.end());
+                               })
+                           .get();
         }
         ccdVec3Set(&s.position, t.translation.x, t.translation.y, t.translation.z);
         ccdQuatSet(&s.rotation, t.rotation.x, t.rotation.y, t.rotation.z, t.rotation.w);
@@ -102,7 +105,7 @@ private:
     Routine routine_;
     ccd_t settings_;
     const PairSet* set_ = nullptr;
-    std::vector<std::vector<Vec3>> points_;
+    SharedShapes<std::vector<Vec3>> shared_;
     std::vector<Solid> a_, b_;
 };
 

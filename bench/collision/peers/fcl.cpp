@@ -45,10 +45,10 @@ public:
     bool takes(const PairSet&) const override { return true; }
     void load(const PairSet& set) override {
         overlapping_ = set.overlapping;
-        a_.clear(), b_.clear(), pose_.clear();
+        a_.clear(), b_.clear(), pose_.clear(), shared_.clear();
         for (const ConvexCase& c : set.cases) {
-            a_.push_back(shape_of(c.a));
-            b_.push_back(shape_of(c.b));
+            a_.push_back(shared_.of(c.a, shape_of));
+            b_.push_back(shared_.of(c.b, shape_of));
             pose_.push_back(transform_of(c.b_in_a));
         }
     }
@@ -71,6 +71,7 @@ public:
 
 private:
     bool overlapping_ = false;
+    SharedShapes<fcl::CollisionGeometryd> shared_;
     std::vector<std::shared_ptr<fcl::CollisionGeometryd>> a_, b_;
     std::vector<fcl::Transform3d> pose_;
 };
