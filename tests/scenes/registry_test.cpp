@@ -10,12 +10,26 @@ namespace lendulet {
 namespace {
 
 TEST(Registry, ListsEverySceneOnceWithASentence) {
-    const char* expected[] = {"large_pyramid", "many_pyramids",     "box_pile",      "sphere_pile",    "capsule_pile",
-                              "convex_pile",   "mixed_pile",        "joint_grid",    "ragdolls",       "tumbler",
-                              "mesh_terrain",  "large_world_sleep", "stack",         "mass_ratio",     "chain_heavy",
-                              "wall_ball",     "many_things",       "two_spheres",   "sphere_and_box", "two_boxes",
-                              "wrecking_ball", "carpet_bomb",       "spinning_ball", "rotating_board", "newtons_cradle",
-                              "dzhanibekov",   "dominoes"};
+    const char* expected[] = {"large_pyramid",  "many_pyramids",
+                              "box_pile",       "sphere_pile",
+                              "capsule_pile",   "convex_pile",
+                              "mixed_pile",     "joint_grid",
+                              "ragdolls",       "tumbler",
+                              "mesh_terrain",   "large_world_sleep",
+                              "stack",          "mass_ratio",
+                              "chain_heavy",    "wall_ball",
+                              "many_things",    "two_spheres",
+                              "sphere_and_box", "two_boxes",
+                              "wrecking_ball",  "carpet_bomb",
+                              "spinning_ball",  "rotating_board",
+                              "newtons_cradle", "dzhanibekov",
+                              "dominoes",       "domino_spiral",
+                              "brick_tower",    "arch",
+                              "card_house",     "ragdoll_avalanche",
+                              "bridge",         "car",
+                              "gear_train",     "walker",
+                              "hourglass",      "marble_machine",
+                              "t_handle",       "ten_thousand_boxes"};
     std::vector<SceneInfo> scenes = built_in_scenes();
     EXPECT_EQ(scenes.size(), std::size(expected));
     for (const char* name : expected) {
