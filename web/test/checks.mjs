@@ -178,7 +178,7 @@ export const checks = {
         assert.deepEqual(nameless, []);
     },
 
-    async "pictures of scenes show something"({ open, save }) {
+    async "pictures of scenes show something"({ open, save, keeps }) {
         const pictures = [
             ["domino_spiral:300", 700, "body", "light"], ["brick_tower:20", 190, "body", "light"],
             ["hourglass:800", 330, "body", "light"], ["bridge:26", 330, "body", "light"],
@@ -190,7 +190,7 @@ export const checks = {
         ];
         for (const [scene, steps, colours, scheme, fit] of pictures) {
             const page = await open({ viewport: { width: 680, height: 460 }, colorScheme: scheme },
-                `?shadows=1024#scene=${scene}&colours=${colours}&paused=1`);
+                `?shadows=1024${keeps ? "" : "&ao=0"}#scene=${scene}&colours=${colours}&paused=1`);
             await run(page, scene, steps);
             if (fit) await page.evaluate(() => window.lendulet.lookAtAll());
             await frames(page, 1);
@@ -202,9 +202,10 @@ export const checks = {
         }
     },
 
-    async "pictures of the engine's structures and of two futures show something"({ open, save }) {
+    async "pictures of the engine's structures and of two futures show something"({ open, save, keeps }) {
         const show = async (name, scene, steps, prepare, more) => {
-            const page = await open({ viewport: { width: 680, height: 460 } }, `?shadows=1024#scene=${scene}&paused=1`);
+            const looks = `?shadows=1024${keeps ? "" : "&ao=0"}`;
+            const page = await open({ viewport: { width: 680, height: 460 } }, `${looks}#scene=${scene}&paused=1`);
             await run(page, scene, steps);
             await page.evaluate(prepare);
             await page.evaluate((count) => {
