@@ -14,7 +14,8 @@ const names = table
     .map(([name, { size }]) => (size ? `${name}:${size}` : name));
 const steps = 120, hashes = {};
 for (const name of names) {
-    const json = execFileSync(program, ["run", name, "--seconds", "2", "--quiet", "--json", "-"], { encoding: "utf8" });
+    const json = execFileSync(program, ["run", name, "--seconds", "2", "--quiet", "--json", "-"],
+        { encoding: "utf8", maxBuffer: 64 * 1024 * 1024 });
     const run = JSON.parse(json);
     if (run.steps !== steps) throw new Error(`${name}: ${run.steps} steps in 2 s, expected ${steps}`);
     hashes[name] = run.hash;

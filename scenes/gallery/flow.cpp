@@ -132,7 +132,7 @@ SceneDescription marble_machine(int marbles) {
         if (i % 3 == 0)
             add_part(wheel, Box{{0.26f, 0.03f, 0.34f}},
                      {{(wheel_radius - 0.3f) * s.cos, (wheel_radius - 0.3f) * s.sin, 0.0f},
-                      turn * rotation_about(along_z, 0.35f)});
+                      turn * rotation_about(along_z, -0.9f)});
     }
     const int wheel_index = last_body(scene);
     SceneBody& back = scene.bodies.emplace_back();
@@ -142,7 +142,7 @@ SceneDescription marble_machine(int marbles) {
     for (float side : {-1.0f, 1.0f})
         add_part(back, Cylinder{0.03f, wheel_radius + 0.1f},
                  {{0.0f, 0.0f, 0.38f * side}, rotation_about(along_x, 0.5f * pi)});
-    add_channel(scene, {-0.35f, hub.y + 1.15f, 0.0f}, 1.0f, -0.16f);
+    add_channel(scene, {0.15f, hub.y + 1.15f, 0.0f}, 1.15f, -0.16f);
     add_channel(scene, {0.55f, hub.y + 0.25f, 0.0f}, 1.15f, 0.16f);
     add_channel(scene, {-0.5f, hub.y - 0.65f, 0.0f}, 1.15f, -0.16f);
     for (int i = 0; i < marbles; ++i) {

@@ -6,7 +6,7 @@ namespace lendulet::scenes {
 namespace {
 
 constexpr float bar_half = 0.55f, bar_radius = 0.11f, stem_half = 0.3f, stem_radius = 0.1f, density = 1000.0f;
-constexpr Vec3 first_spin{0.02f, 5.5f, 0.0f};  // body frame, rad/s; the stem lies along y
+constexpr Vec3 first_spin{0.03f, 8.0f, 0.0f};  // body frame, rad/s; the stem lies along y
 constexpr Position real_place{-1.1f, 1.6f, 0.0f}, naive_place{1.1f, 1.6f, 0.0f};
 
 void add_handle(SceneBody& body) {

@@ -18,6 +18,7 @@ import { ContactMarks } from "./view/marks";
 import type { Stage } from "./view/stage";
 import { Structure } from "./view/structure";
 import { type Colouring, colourings, dark, light, type Theme } from "./view/theme";
+import type { Visuals } from "./view/visuals";
 
 const firstScene = "mixed_pile:600";
 const ballSpeed = 22; // in radii of the scene a second, at most 40 m/s
@@ -36,6 +37,7 @@ export class App {
     private readonly figures: Figures;
     private readonly tuning: Tuning;
     private readonly list: SceneList;
+    private visuals: Visuals | null = null;
     private make: () => World | Promise<World> = () => { throw new Refused("nothing is open"); };
     private dirty = true;    // everything must be placed and painted anew
     private drawnStep = -1;  // state that was drawn last
@@ -107,6 +109,7 @@ export class App {
     opened: () => void = () => undefined; // another world is shown
     private show(world: World, scene: string, link: Link, toDo: Deed[]): void {
         this.opened();
+        this.setVisuals(null);
         this.pointer.forget();
         this.player.install(world, scene, toDo);
         this.pick(null);
@@ -194,6 +197,14 @@ export class App {
     setStructure(change: Partial<Pick<Structure, "boxes" | "joints" | "momenta" | "trails">>): void {
         Object.assign(this.structure, change);
         if (!this.structure.trails) this.structure.forget();
+        this.dirty = true;
+    }
+    // What a file shows, in place of what collides.
+    setVisuals(visuals: Visuals | null): void {
+        if (this.visuals) this.stage.scene.remove(this.visuals.group);
+        this.visuals = visuals;
+        this.bodies.hidden = visuals?.parts ?? new Map();
+        if (visuals) this.stage.scene.add(visuals.group);
         this.dirty = true;
     }
     pick(body: number | null): void {
@@ -305,6 +316,7 @@ export class App {
         if (!fresh && !moved && share === this.drawnShare && !this.pointer.active) return;
         this.drawnShare = share;
         this.bodies.place(before, now, share, this.dirty);
+        this.visuals?.place(this.bodies, before, now, share);
         if (twin) this.twinBodies.place(this.player.twinNow, this.player.twinNow, 1, this.dirty);
         if (fresh) this.drawFresh(now, moment !== null);
         this.drawnStep = step;

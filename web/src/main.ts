@@ -1,5 +1,5 @@
-// Loads the engine, finds out what this page is to show, and starts the viewer. `?shadows=0` leaves shadows out, `?ao=0`
-// ambient occlusion, for machines that draw in software.
+// Loads the engine, finds out what this page is to show, and starts the viewer. `?shadows=0` leaves shadows out,
+// `?ao=0` ambient occlusion, for machines that draw in software.
 import { App } from "./app";
 import { Engine } from "./engine/engine";
 import { Sources } from "./sources";

@@ -178,15 +178,19 @@ export const checks = {
         assert.deepEqual(nameless, []);
     },
 
-    async "pictures of six scenes show something"({ open, save }) {
+    async "pictures of scenes show something"({ open, save, keeps }) {
         const pictures = [
+            ["domino_spiral:300", 700, "body", "light"], ["brick_tower:20", 190, "body", "light"],
+            ["hourglass:800", 330, "body", "light"], ["bridge:26", 330, "body", "light"],
+            ["gear_train:5", 120, "body", "light"], ["walker", 200, "body", "light", "fit"],
+            ["ragdoll_avalanche:60", 150, "body", "light", "fit"], ["marble_machine:40", 480, "body", "dark"],
             ["mixed_pile:600", 300, "body", "light", "fit"], ["ragdolls:24", 150, "body", "light"],
             ["wall_ball:14", 75, "body", "light"], ["mesh_terrain:400", 200, "body", "light"],
             ["joint_grid:24", 110, "body", "light"], ["tumbler:9", 240, "speed", "dark"],
         ];
         for (const [scene, steps, colours, scheme, fit] of pictures) {
             const page = await open({ viewport: { width: 680, height: 460 }, colorScheme: scheme },
-                `?shadows=512#scene=${scene}&colours=${colours}&paused=1`);
+                `?shadows=1024${keeps ? "" : "&ao=0"}#scene=${scene}&colours=${colours}&paused=1`);
             await run(page, scene, steps);
             if (fit) await page.evaluate(() => window.lendulet.lookAtAll());
             await frames(page, 1);
@@ -196,5 +200,35 @@ export const checks = {
             save(`viewer-${scene.split(":")[0]}.png`, png);
             await page.context().close();
         }
+    },
+
+    async "pictures of the engine's structures and of two futures show something"({ open, save, keeps }) {
+        const show = async (name, scene, steps, prepare, more) => {
+            const looks = `?shadows=1024${keeps ? "" : "&ao=0"}`;
+            const page = await open({ viewport: { width: 680, height: 460 } }, `${looks}#scene=${scene}&paused=1`);
+            await run(page, scene, steps);
+            await page.evaluate(prepare);
+            await page.evaluate((count) => {
+                for (let i = 0; i < count; ++i) window.lendulet.player.step();
+            }, more);
+            await frames(page, 2);
+            const png = await page.screenshot({ clip: await page.locator("main").boundingBox() });
+            const { colours: many, commonest } = await look(page, png);
+            assert.ok(many > 500 && commonest < 0.9, `${name}: ${many} colours, ${commonest} of one`);
+            save(`viewer-${name}.png`, png);
+            await page.context().close();
+        };
+        await show("levels", "box_pile:200", 150, () => {
+            window.lendulet.change({ do: "set", broadPhase: 6 });
+            window.lendulet.setStructure({ boxes: "levels" });
+        }, 1);
+        await show("futures", "large_pyramid:12", 30, () => {
+            const app = window.lendulet, { camera, controls } = app.stage;
+            app.player.fork();
+            app.shoot(300, 200);
+            document.getElementById("message").hidden = true;
+            camera.position.sub(controls.target).multiplyScalar(1.6).add(controls.target);
+        }, 70);
+        await show("joints", "ragdolls:6", 60, () => window.lendulet.setStructure({ joints: true }), 1);
     },
 };

@@ -39,8 +39,20 @@ export const fileChecks = {
         assert.ok(built.bodies > 5, `${built.bodies} bodies`);
         const { now } = await steps(page, 60);
         assert.ok(now.every(Number.isFinite));
+        // A file with meshes, its buffer put inside: they are drawn in place of what collides.
+        const folder = new URL("../../scenes/files/", import.meta.url);
+        const meshes = JSON.parse(readFileSync(new URL("meshes.gltf", folder), "utf8"));
+        const data = readFileSync(new URL(meshes.buffers[0].uri, folder)).toString("base64");
+        meshes.buffers[0].uri = `data:application/octet-stream;base64,${data}`;
+        await drop(page, "meshes.gltf", JSON.stringify(meshes));
+        await until(page, () => window.lendulet.player.sceneName === "meshes.gltf" && window.lendulet.visuals !== null);
+        assert.ok((await steps(page, 30)).now.every(Number.isFinite));
+        assert.ok(await page.evaluate(() => window.lendulet.visuals.parts.size) >= 2);
+        await drop(page, "playground.gltf", gltf);
+        await until(page, () => window.lendulet.player.sceneName === "playground.gltf");
         for (const [name, bytes, said] of [["broken.gltf", "{\"asset\":", "malformed"], ["old.gltf", "{}", "glTF 2.0"],
-            ["picture.png", "x", "neither"], ["no.json", "{}", "repro"], ["cut.rec", "LENDREC\n\x02\x00", "too early"]]) {
+            ["picture.png", "x", "neither"], ["no.json", "{}", "repro"],
+            ["cut.rec", "LENDREC\n\x02\x00", "too early"]]) {
             await drop(page, name, bytes);
             await until(page, (said) => document.getElementById("message").textContent.includes(said), said);
             assert.equal(await page.evaluate(() => window.lendulet.player.sceneName), "playground.gltf", name);
@@ -74,9 +86,10 @@ export const fileChecks = {
             await drop(page, "program.rec", readFileSync(other));
             await until(page, () => window.lendulet.player.world.length === 180);
             const moments = await page.evaluate(() => {
-                const { player } = window.lendulet, at = (step) => (player.look(step), player.now.slice(300, 308).join());
+                const { player } = window.lendulet, { colliders, bodies } = player.world.shapes();
+                const at = (step) => (player.look(step), player.now.slice(300, 308).join());
                 const forward = [100, 130, 180].map(at), back = [180, 130, 100].map(at).reverse();
-                return { forward, back, shapes: player.world.shapes().colliders.length, of: player.world.shapes().bodies };
+                return { forward, back, shapes: colliders.length, of: bodies };
             });
             assert.deepEqual(moments.forward, moments.back);
             assert.equal(moments.shapes, moments.of);
@@ -95,7 +108,8 @@ export const fileChecks = {
         await page.evaluate(() => window.lendulet.change({ do: "set", solverSteps: 4 }));
         const { hash } = await steps(page, 20);
         const repro = await saved(page, () => page.click("#save-repro"));
-        const address = await until(page, () => location.hash.includes("deeds=") && location.href).then((h) => h.jsonValue());
+        const found = await until(page, () => location.hash.includes("deeds=") && location.href);
+        const address = await found.jsonValue();
         await page.evaluate(() => window.lendulet.open("stack:3"));
         await drop(page, "again.json", repro);
         await until(page, () => window.lendulet.player.sceneName === "wall_ball:4");
@@ -156,12 +170,15 @@ export const fileChecks = {
         assert.ok(!(await page.isVisible("#futures")));
     },
 
-    async "the engine's own structures are drawn: boxes, levels, intervals, joints, momenta, islands, colours"({ open }) {
+    async "the engine's own structures are drawn: boxes, levels, intervals, joints, momenta, islands, colours"({
+        open,
+    }) {
         const page = await open(wide, "?shadows=0#scene=ragdolls:4&paused=1");
         await steps(page, 70);
         const lines = () => page.evaluate(() => {
             window.lendulet.frame();
-            return window.lendulet.structure.group.children.map((mesh) => (mesh.visible ? mesh.geometry.drawRange.count : 0));
+            const { children } = window.lendulet.structure.group;
+            return children.map((mesh) => (mesh.visible ? mesh.geometry.drawRange.count : 0));
         });
         await page.selectOption("#set-broad-phase", { label: "rtree-omt" });
         await steps(page, 1);
@@ -178,7 +195,8 @@ export const fileChecks = {
         const groups = await page.evaluate(() => {
             window.lendulet.setColours("island");
             const list = window.lendulet.player.world.groups();
-            return { islands: new Set(list.filter((_, i) => i % 2 === 0)).size, colours: new Set(list.filter((_, i) => i % 2)).size };
+            const kinds = (k) => new Set(list.filter((_, i) => i % 2 === k)).size;
+            return { islands: kinds(0), colours: kinds(1) };
         });
         assert.ok(groups.islands >= 2 && groups.colours >= 2, JSON.stringify(groups));
         await page.selectOption("#colours", "colour");

@@ -49,9 +49,10 @@ const closed = (socket) => new Promise((done) => {
 // A message of a client, masked as the protocol wants it.
 function frame(text) {
     const body = Buffer.from(text), mask = randomBytes(4);
+    const size = Buffer.alloc(8);
+    size.writeBigUInt64BE(BigInt(body.length));
     const head = body.length < 126 ? Buffer.from([0x81, 0x80 | body.length])
-        : body.length < 65536 ? Buffer.from([0x81, 0xfe, body.length >> 8, body.length & 255])
-        : Buffer.concat([Buffer.from([0x81, 0xff, 0, 0, 0, 0]), Buffer.from(Uint32Array.of(body.length).buffer).reverse()]);
+        : body.length < 65536 ? Buffer.from([0x81, 0xfe, ...size.subarray(6)]) : Buffer.from([0x81, 0xff, ...size]);
     return Buffer.concat([head, mask, body.map((byte, i) => byte ^ mask[i & 3])]);
 }
 const get = (port, path, headers = {}) => new Promise((done, fail) => {
@@ -114,9 +115,9 @@ export const nativeChecks = {
     async "native: foreign pages and names are refused, and only the page's files are served"({ program, folder }) {
         const { port, end } = await startNative(program, folder, "stack:3");
         const own = { Origin: `http://localhost:${port}` };
-        for (const headers of [{}, { Origin: "http://example.org" }, { Origin: "null" }, { Origin: `https://localhost:${port}` },
-            { Origin: `http://localhost:${port + 1}` }, { Origin: `http://localhost:${port}.example.org` },
-            { ...own, Host: `example.org:${port}` }])
+        const foreign = ["http://example.org", "null", `https://localhost:${port}`, `http://localhost:${port + 1}`,
+            `http://localhost:${port}.example.org`].map((Origin) => ({ Origin }));
+        for (const headers of [{}, ...foreign, { ...own, Host: `example.org:${port}` }])
             assert.equal((await upgrade(port, headers)).status, 403, JSON.stringify(headers));
         const { status, socket } = await upgrade(port, own);
         assert.equal(status, 101);
@@ -124,7 +125,8 @@ export const nativeChecks = {
         assert.equal(await get(port, "/"), 200);
         assert.equal(await get(port, "/viewer.js"), 200);
         assert.equal(await get(port, "/", { Host: "example.org" }), 403);
-        for (const path of ["/../CMakeLists.txt", "/%2e%2e/secret", "/..%2f..%2fetc/passwd", "//etc/passwd", "/.hidden", "/recording"])
+        for (const path of ["/../CMakeLists.txt", "/%2e%2e/secret", "/..%2f..%2fetc/passwd", "//etc/passwd", "/.hidden",
+            "/recording"])
             assert.equal(await get(port, path), 404, path);
         assert.equal(await end(), 0);
     },

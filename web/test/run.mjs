@@ -28,6 +28,7 @@ const native = JSON.parse(readFileSync(join(folder, "native-hashes.json"), "utf8
 if (images) mkdirSync(images, { recursive: true });
 
 const problems = [];
+const ours = /^(http:\/\/(127\.0\.0\.1|localhost):|ws:\/\/localhost:|data:|blob:)/;
 // A page in which every error and every request that leaves the machine is a failure.
 async function open(options = {}, address = "?shadows=0", url = server.url) {
     const context = await browser.newContext({ viewport: { width: 640, height: 400 }, ...options });
@@ -35,7 +36,7 @@ async function open(options = {}, address = "?shadows=0", url = server.url) {
     page.on("pageerror", (error) => problems.push(`error in the page: ${error.message}`));
     page.on("console", (entry) => entry.type() === "error" && problems.push(`the page says: ${entry.text()}`));
     page.on("request", (request) => {
-        if (!/^(http:\/\/(127\.0\.0\.1|localhost):|ws:\/\/localhost:|data:|blob:)/.test(request.url())) problems.push(`asks for ${request.url()}`);
+        if (!ours.test(request.url())) problems.push(`asks for ${request.url()}`);
     });
     await page.goto(url + address);
     await page.waitForFunction(() => window.lendulet !== undefined, null, { polling: 100, timeout: 90000 });
@@ -43,7 +44,10 @@ async function open(options = {}, address = "?shadows=0", url = server.url) {
 }
 
 const program = process.env.LENDULET ?? fileURLToPath(new URL("../../build/release/bin/lendulet", import.meta.url));
-const tools = { open, native, program, folder: resolve(folder), save: (name, bytes) => images && writeFileSync(join(images, name), bytes) };
+const tools = {
+    open, native, program, folder: resolve(folder), keeps: images !== null,
+    save: (name, bytes) => images && writeFileSync(join(images, name), bytes),
+};
 let failed = 0;
 const chosen = Object.entries({ ...checks, ...fileChecks, ...nativeChecks }).filter(([name]) => name.includes(words));
 for (const [name, check] of chosen) {

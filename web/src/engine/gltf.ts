@@ -89,10 +89,13 @@ const plainPart: Part = {
     orientation: [0, 0, 0, 1], density: 1000, friction: -1, restitution: -1,
 };
 
-export function readGltf(engine: Engine, bytes: Uint8Array, warnings: string[]): PageWorld {
+// `bodies` is filled with the body's index of each node that moves, or stands, with one.
+export function readGltf(
+    engine: Engine, bytes: Uint8Array, warnings: string[], bodies: Map<number, number>,
+): PageWorld {
     const world = engine.createEmpty(9.81);
     try {
-        new Reader(new Document(bytes), world, warnings).read();
+        new Reader(new Document(bytes), world, warnings).read(bodies);
     } catch (error) {
         world.destroy();
         throw error;
@@ -127,7 +130,7 @@ class Reader {
         for (const child of json.children ?? []) this.visit(child, index, depth + 1);
     }
 
-    read(): void {
+    read(bodies: Map<number, number>): void {
         const parts = new Map<number, Part[]>(); // by the node of the body
         for (const index of this.order) {
             const node = this.nodes[index], physics = node.json.extensions?.[rigid];
@@ -142,6 +145,11 @@ class Reader {
         for (const index of this.order) {
             const joint = this.nodes[index].json.extensions?.[rigid]?.joint;
             if (joint) this.join(index, joint);
+        }
+        const owners = [...this.numbers.keys()];
+        for (const index of this.order) {
+            const owner = this.ownerOf(index);
+            if (owner >= 0) bodies.set(index, owners.indexOf(owner));
         }
     }
     private frame(index: number): { position: THREE.Vector3; turn: THREE.Quaternion; scale: THREE.Vector3 } {

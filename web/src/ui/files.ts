@@ -3,6 +3,7 @@ import type { App } from "../app";
 import { readGltf } from "../engine/gltf";
 import { isRecording, RecordingWorld } from "../engine/recording";
 import { Refused } from "../engine/types";
+import { Visuals } from "../view/visuals";
 import { element } from "./dom";
 import { isDeeds } from "./permalink";
 import { download, Recorder, type Repro } from "./record";
@@ -59,9 +60,13 @@ export class Files {
     private openGltf(name: string, bytes: Uint8Array): void {
         const { engine } = this.app.sources;
         if (!engine) throw new Refused(`This page has no engine of its own: lendulet view ${name} shows the file.`);
-        const warnings: string[] = [];
-        this.app.openWith(name, () => readGltf(engine, bytes, warnings));
+        const warnings: string[] = [], bodies = new Map<number, number>();
+        if (!this.app.openWith(name, () => readGltf(engine, bytes, warnings, bodies))) return;
         if (warnings.length > 0) this.app.say(`${name}: ${warnings[0]}`);
+        const { world } = this.app.player;
+        Visuals.read(bytes, bodies).then(
+            (visuals) => this.app.player.world === world && this.app.setVisuals(visuals),
+            (error: Error) => this.app.say(`${name}: what collides is drawn (${error.message})`));
     }
     private openRepro(name: string, bytes: Uint8Array): void {
         let repro: Partial<Repro>;

@@ -35,6 +35,7 @@ const one = new THREE.Vector3(1, 1, 1);
 
 export class Bodies {
     readonly group = new THREE.Group();
+    hidden: ReadonlyMap<number, unknown> = new Map(); // bodies that are drawn by somebody else
     // Of what moves, and of what is drawn of the rest, at the last rebuild.
     readonly bounds = new THREE.Box3();
     private batches: Batch[] = [];
@@ -122,7 +123,7 @@ export class Bodies {
             for (let i = 0; i < batch.colliders.length; ++i) {
                 const body = batch.colliders[i].body;
                 // Not there yet, or no more: recordings say so by a rotation of nothing.
-                if (body >= there || isGone(now, poseStride * body + 4)) {
+                if (body >= there || this.hidden.has(body) || isGone(now, poseStride * body + 4)) {
                     array.fill(0, 16 * i, 16 * i + 16);
                     continue;
                 }
@@ -134,6 +135,13 @@ export class Bodies {
             }
             batch.mesh.instanceMatrix.needsUpdate = true;
         }
+    }
+
+    // Where a body is drawn.
+    pose(before: Float32Array, now: Float32Array, body: number, share: number): THREE.Matrix4 {
+        const at = poseStride * body;
+        this.blend(at < before.length ? before : now, now, at, share);
+        return this.matrix.compose(this.position, this.rotation, one);
     }
 
     // Quaternions by their normalised mean: within a step bodies turn little.

@@ -5,6 +5,16 @@ import { gridColour } from "./materials";
 import { Occlusion } from "./occlusion";
 import type { Theme } from "./theme";
 
+// The colour that the Khronos neutral tone mapper turns into this one, nearly, for greyish colours: with occlusion the
+// whole picture goes through it, the sky too.
+function beforeToneMapping(colour: THREE.Color): void {
+    const start = 0.76, d = 1 - start, peak = Math.max(colour.r, colour.g, colour.b);
+    if (peak > start) colour.multiplyScalar(((d * d) / (1 - peak) - d + start) / peak);
+    const least = Math.min(colour.r, colour.g, colour.b);
+    const offset = least < 0.04 ? Math.sqrt(least / 6.25) - least : 0.04;
+    colour.setRGB(colour.r + offset, colour.g + offset, colour.b + offset);
+}
+
 export class Stage {
     readonly scene = new THREE.Scene();
     readonly camera = new THREE.PerspectiveCamera(42, 1, 0.05, 5000);
@@ -38,12 +48,18 @@ export class Stage {
     }
     // For machines that are too slow for it.
     dropOcclusion(): void {
+        if (!this.occlusion) return;
         this.occlusion = null;
+        this.apply(this.theme);
     }
+    private theme!: Theme;
 
     apply(theme: Theme): void {
-        this.scene.background = new THREE.Color(theme.sky);
-        this.scene.fog = new THREE.Fog(theme.sky, 100, 500);
+        this.theme = theme;
+        const sky = new THREE.Color(theme.sky);
+        if (this.occlusion) beforeToneMapping(sky);
+        this.scene.background = sky;
+        this.scene.fog = new THREE.Fog(sky, 100, 500);
         this.sun.color.setHex(theme.sun);
         this.sun.intensity = theme.sunStrength;
         this.sky.color.setHex(theme.hemisphere[0]);
