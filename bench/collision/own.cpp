@@ -124,7 +124,7 @@ public:
             BoxBatch batch = lists_->batch(frames_.data(), count);
             kernels_.collide_boxes(batch);
             for (int k = 0; k < count; ++k) {
-                const BoxManifold& m = lists_->out[k];
+                const lendulet::BatchManifold& m = lists_->out[k];
                 double least = 1e30;
                 for (int j = 0; j < m.count; ++j) least = std::min<double>(least, m.points[j].separation);
                 answers[static_cast<size_t>(first + k)] = m.count > 0 ? least : failed;
