@@ -1,6 +1,6 @@
 // Recovery from deep overlaps. A contact undoes overlap at the separation speed that is set, which is a speed for two
-// bodies: one that nine others push at once would leave at a multiple of it. Where a body has more than four contacts so
-// deep that they push at that speed, each of them gets its share, so that the body keeps to about the speed that is
+// bodies: one that nine others push at once would leave at a multiple of it. Where a body has more than four contacts
+// so deep that they push at that speed, each of them gets its share, so that the body keeps to about the speed that is
 // set.
 #include "base/hash.h"
 #include "base/prefetch.h"

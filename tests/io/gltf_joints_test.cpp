@@ -146,8 +146,10 @@ TEST_F(GltfJoints, HoldWhatTheyShould) {
     EXPECT_GT(joint(11).coordinates[distance], 0.9f);
     EXPECT_LT(absolute(joint(7).coordinates[3]), 0.4f + 5e-3f);  // both angles of the universal joint
     EXPECT_LT(absolute(joint(7).coordinates[5]), 0.4f + 5e-3f);
-    // Slides along z and turns about it, nothing else.
-    EXPECT_LT(absolute(joint(12).coordinates[0]) + absolute(joint(12).coordinates[1]), 1e-3f);
+    // Slides along y and turns about it, nothing else.
+    EXPECT_LT(absolute(joint(12).coordinates[0]) + absolute(joint(12).coordinates[2]), 1e-3f);
+    EXPECT_LT(absolute(joint(12).coordinates[3]) + absolute(joint(12).coordinates[5]), 1e-3f);
+    EXPECT_GT(absolute(joint(12).coordinates[1]), 5.0f);
 }
 
 TEST_F(GltfJoints, DriveReachesItsSpeed) {

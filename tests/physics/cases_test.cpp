@@ -17,7 +17,6 @@ const std::set<std::string> known_red = {
     "A26: speed four times as large / as it is, over sqrt(g H)",
     "A26: speed sixteen times as large / as it is, over sqrt(g H)",
     "A29: ten by turns 1 and 1000 kg: sideways, m",
-    "A33: ten balls at one point: fastest, m/s",
     "A38: slider-crank: torque off virtual work / greatest",
 };
 
@@ -55,11 +54,12 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Effort{"A01", 5, 1}, Effort{"A02", 3, 1}, Effort{"A03", 3, 1}, Effort{"A04", 2, 1},
                       Effort{"A06", 2, 1}, Effort{"A07", 2, 1}, Effort{"A08", 5, 1}, Effort{"A09", 1, 10},
                       Effort{"A10", 1, 20}, Effort{"A11", 1, 20}, Effort{"A12", 5, 1}, Effort{"A13", 5, 1},
-                      Effort{"A14", 5, 1}, Effort{"A15", 5, 1}, Effort{"A17", 2, 5}, Effort{"A18", 5, 1}, Effort{"A19", 2, 1},
-                      Effort{"A20", 3, 1}, Effort{"A21", 5, 1}, Effort{"A22", 2, 1}, Effort{"A23", 1, 4},
-                      Effort{"A24", 5, 1}, Effort{"A26", 1, 1}, Effort{"A27", 2, 1}, Effort{"A28", 2, 1},
-                      Effort{"A29", 5, 1}, Effort{"A32", 1, 12}, Effort{"A33", 5, 1}, Effort{"A34", 1, 1}, Effort{"A36", 2, 1},
-                      Effort{"A38", 1, 1}, Effort{"A39", 3, 1}, Effort{"A40", 1, 1}, Effort{"A41", 4, 2}),
+                      Effort{"A14", 5, 1}, Effort{"A15", 5, 1}, Effort{"A17", 2, 5}, Effort{"A18", 5, 1},
+                      Effort{"A19", 2, 1}, Effort{"A20", 3, 1}, Effort{"A21", 5, 1}, Effort{"A22", 2, 1},
+                      Effort{"A23", 1, 4}, Effort{"A24", 5, 1}, Effort{"A26", 1, 1}, Effort{"A27", 2, 1},
+                      Effort{"A28", 2, 1}, Effort{"A29", 5, 1}, Effort{"A32", 1, 12}, Effort{"A33", 5, 1},
+                      Effort{"A34", 1, 1}, Effort{"A36", 2, 1}, Effort{"A38", 1, 1}, Effort{"A39", 3, 1},
+                      Effort{"A40", 1, 1}, Effort{"A41", 4, 2}),
     [](const auto& info) { return std::string(info.param.id); });
 
 // No case is left out here.
