@@ -98,7 +98,8 @@ std::vector<Step> gjk_steps(const Pair& p, const ConvexDistance& d, const Record
         Step step = difference_step(p, "simplex " + std::to_string(++number),
                                     std::to_string(s.points.size()) + (s.points.size() == 1 ? " point" : " points") +
                                         text("; O is %.6g m from them", length(s.nearest)));
-        if (s.points.size() == 4) step.note = "four points hold O: the cores overlap";
+        if (s.points.size() == 4 || length(s.nearest) < 1e-12)
+            step.note = std::to_string(s.points.size()) + " points hold O: the cores overlap";
         for (size_t i = 0; i < s.points.size(); ++i)
             for (size_t k = 0; k < i; ++k) step.marks.push_back(path({s.points[k], s.points[i]}, orange, 1.4));
         if (s.points.size() == 3)

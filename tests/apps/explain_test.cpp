@@ -28,7 +28,7 @@ TEST(Explain, EverySequenceIsDrawn) {
     };
     const Case cases[] = {
         {"gjk", "box:0.5,0.4,0.3", "capsule:0.4,0.2@1.3,0.6,0.2@0,0,40", "simplex 2"},
-        {"gjk", "cylinder:0.4,0.3", "cone:0.4,0.3@0.2,0.3,0", "the cores overlap"},
+        {"gjk", "cylinder:0.4,0.3", "box:0.4,0.3,0.5@0.21,0.33,0.12@10,20,30", "the cores overlap"},
         {"epa", "hull:20,0.6", "box:0.4,0.4,0.4@0.5,0.3,0.2@30,20,10", "polytope 2"},
         {"clip", "box:0.6,0.3,0.5", "box:0.4,0.3,0.4@0.4,0.59,0.2@0,30,0", "the manifold"},
         {"sat", "box:0.6,0.3,0.5", "box:0.4,0.3,0.4@0.4,0.59,0.2@0,30,10", "the axis of the contact"},
