@@ -183,8 +183,27 @@ class Reader {
         const { points, triangles } = this.file.mesh(mesh), stretch = scale.toArray();
         const scaled = Float32Array.from(points, (v, i) => v * stretch[i % 3]);
         part.type = hull ? ShapeType.hull : ShapeType.mesh;
-        part.mesh = hull ? addHull(this.world, scaled) : addMesh(this.world, scaled, Uint32Array.from(triangles));
+        if (hull) part.mesh = this.hull(scaled);
+        else part.mesh = addMesh(this.world, scaled, Uint32Array.from(triangles));
         return part;
+    }
+    // A flat one becomes a thin slab.
+    private hull(points: Float32Array): number {
+        try {
+            return addHull(this.world, points);
+        } catch (error) {
+            if (!(error instanceof Refused)) throw error;
+            const at = (i: number) => new THREE.Vector3().fromArray(points, 3 * i), normal = new THREE.Vector3();
+            const box = new THREE.Box3().setFromArray(points), size = box.getSize(new THREE.Vector3()).length();
+            for (let i = 2; i < points.length / 3; ++i) {
+                const across = at(1).sub(at(0)).cross(at(i).sub(at(0)));
+                if (across.length() > normal.length()) normal.copy(across);
+            }
+            normal.normalize().multiplyScalar(0.005 * size);
+            const shift = normal.toArray(), moved = (sign: number) => points.map((v, i) => v + sign * shift[i % 3]);
+            this.warnings.push("a flat hull collides as a thin slab");
+            return addHull(this.world, Float32Array.of(...moved(1), ...moved(-1)));
+        }
     }
     private implicitShape(part: Part, number: number, scale: THREE.Vector3, name: string): Part | null {
         const shape = this.file.json.extensions?.[implicit]?.shapes?.[number];
