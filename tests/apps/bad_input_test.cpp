@@ -122,7 +122,7 @@ TEST(BadInput, HostileFilesStaySmallInMemory) {
         for (int i = 0; i < count; ++i) text += item + ',';
         return text + item + "]}";
     };
-    constexpr long limit = 64 * 1024;
+    constexpr long limit = 80 * 1024;  // the program itself takes 11 of them
     EXPECT_LT(peak("nodes.gltf", repeated("nodes", "{}", 2000000)), limit);
     EXPECT_LT(peak("numbers.gltf", repeated("nodes", "0", 4000000)), limit);
     EXPECT_LT(

@@ -65,10 +65,10 @@ TEST(Run, JsonToFileBesideTheText) {
 }
 
 TEST(Run, QuietPrintsNothing) {
-    Outcome outcome = lendulet({"run", "scenes/files/joints.gltf", "--seconds", "0.1", "--quiet"});
+    Outcome outcome = lendulet({"run", "scenes/files/shapes.gltf", "--seconds", "0.1", "--quiet"});
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_EQ(outcome.out + outcome.err, "");
-    outcome = lendulet({"run", "scenes/files/joints.gltf", "--seconds", "0.1"});
+    outcome = lendulet({"run", "scenes/files/shapes.gltf", "--seconds", "0.1"});
     EXPECT_NE(outcome.err.find("warning: nodes["), std::string::npos);
 }
 
