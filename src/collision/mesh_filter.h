@@ -1,6 +1,6 @@
 // Which of the mesh triangles near a convex shape are worth looking at, four at a time: tests of separation along the
-// triangle's normal, its three sides and the shape's own axes. What it rejects touches nothing, or touches the neighbour
-// instead, so that what it lets through decides nothing but the time.
+// triangle's normal, its three sides and the shape's own axes. What it rejects touches nothing, or touches the
+// neighbour instead, so that what it lets through decides nothing but the time.
 #pragma once
 
 #include <cstdint>

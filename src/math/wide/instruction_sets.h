@@ -18,9 +18,9 @@ inline bool cpu_has_avx512() { return false; }
 // The widest vectors of this machine, in lanes.
 inline int native_lanes() { return cpu_has_avx512() ? 16 : cpu_has_avx2() ? 8 : 4; }
 
-// The tables of one set of kernels, by lanes; null where they are not compiled. Builds with LENDULET_FOUR_LANES have none of
-// more than four: WebAssembly, where they would only make the module larger, and sanitizers, where compiling them takes
-// minutes. They give the same bits.
+// The tables of one set of kernels, by lanes; null where they are not compiled. Builds with LENDULET_FOUR_LANES have
+// none of more than four: WebAssembly, where they would only make the module larger, and sanitizers, where compiling
+// them takes minutes. They give the same bits.
 template <class Table>
 struct KernelTables {
     const Table *one, *four, *eight, *sixteen;
