@@ -213,6 +213,15 @@ void foot_on_face(const CoreDifference& difference, const Polytope& polytope, in
     }
 }
 
+// The nearest point should lie as far from the origin as the depth says. Where the last face or round misses that, the
+// farthest point along the normal, which has the right height, may lie nearer to the line.
+void improve_point(const CoreDifference& difference, Penetration& result) {
+    DifferencePoint p = difference.support(result.outward);
+    if (!(absolute(length(p.y) - result.depth) < absolute(length(result.y) - result.depth))) return;
+    result.y = p.y;
+    result.point_a = snap_to_core(difference.a, to_double(p.a));
+}
+
 }  // namespace
 
 template <class Observer>
@@ -236,15 +245,18 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
         bool last = proven || !(gap > tolerance) || expansions == max_expansions ||
                     (gap < repeated * size && polytope.holds(p.y)) || !polytope.expand(f, p);
         if (!last) continue;
-        if (!proven && gap > (difference.curved ? tolerance : repeated * size)) {
+        const Tangency& t = smooth.tangency;
+        const double depth = maximum(upper, lower);
+        const bool is_smooth = smooth.found && t.height <= depth + tangent * size;
+        if (!is_smooth && gap > (difference.curved ? tolerance : repeated * size)) {
             result = descend_from_faces(difference, polytope, expansions);
         } else {
-            result = {maximum(upper, lower), n, {}, {}, gap, expansions};
+            result = {depth, n, {}, {}, gap, expansions};
             foot_on_face(difference, polytope, f, tolerance, result);
         }
-        const Tangency& t = smooth.tangency;
         if (smooth.found && t.height <= result.depth + tangent * size)
             result = {t.height, t.direction, t.p.y, snap_to_core(difference.a, to_double(t.p.a)), t.miss, expansions};
+        else if (difference.curved) improve_point(difference, result);
         return result;
     }
 }
