@@ -79,6 +79,20 @@ TEST(BadInput, Verify) {
                        "/no/such/directory/x: cannot be written");
 }
 
+TEST(BadInput, View) {
+    const std::string page = scratch("page");
+    std::filesystem::create_directories(page);
+    std::ofstream(page + "/index.html") << "<head></head>";
+    expect_refused({"view"}, "SCENE");
+    expect_refused({"view", "stack", "--page", "/nowhere"}, "/nowhere: the page is not there");
+    expect_refused({"view", "no_such_scene", "--page", page}, "no_such_scene");
+    expect_refused({"view", page + "/index.html", "--page", page}, "neither a glTF file nor a recording");
+    expect_refused({"view", "stack", "--port", "99999"}, "--port");
+    expect_refused({"view", "stack", "--threads", "0"}, "--threads");
+    for (const char* bad : {"x", "-1", "1e9"})
+        expect_refused({"view", "stack", std::string("--give-up=") + bad}, "--give-up");
+}
+
 TEST(BadInput, SceneFiles) {
     expect_refused({"run", "missing.gltf"}, "missing.gltf: no such file");
     expect_refused({"run", "missing.glb", "--quiet"}, "missing.glb: no such file");
