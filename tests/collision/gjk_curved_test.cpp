@@ -123,18 +123,18 @@ void certify_pairs(const std::string& name, int count, MakeOther make_other) {
 }
 
 TEST(GjkCurved, PairsOfCurvedCoresAreCertified) {
-    certify_pairs("tapered, tapered", cases(2000),
+    certify_pairs("tapered, tapered", cases(33400),
                   [](Random& random, float scale) { return random_tapered(random, scale); });
 }
 TEST(GjkCurved, CurvedCoresAndBoxesAreCertified) {
-    certify_pairs("tapered, box", cases(2000), [](Random& random, float scale) { return random_box(random, scale); });
+    certify_pairs("tapered, box", cases(33400), [](Random& random, float scale) { return random_box(random, scale); });
 }
 TEST(GjkCurved, CurvedCoresAndSegmentsAreCertified) {
-    certify_pairs("tapered, segment", cases(1000),
+    certify_pairs("tapered, segment", cases(33400),
                   [](Random& random, float scale) { return make_segment(scale * random.uniform(0.25f, 1)); });
 }
 TEST(GjkCurved, CurvedCoresAndHullsAreCertified) {
-    certify_pairs("tapered, hull", cases(500),
+    certify_pairs("tapered, hull", cases(6700),
                   [](Random& random, float scale) { return random_hull(random, scale, 20); });
 }
 

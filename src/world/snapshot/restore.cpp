@@ -227,6 +227,7 @@ void apply_pair(WorldData& world, const SavedPair& saved, const SavedContact* co
 void apply_pairs(WorldData& world, const SavedState& state) {
     world.pairs.clear();
     world.records.clear();
+    world.eased.clear();
     world.found_separations.clear();
     RestingContacts& rest = world.resting;
     for (Array<uint32_t>* list : {&rest.records, &rest.hits}) list->clear();
