@@ -9,7 +9,8 @@
 namespace lendulet {
 namespace {
 
-constexpr int most_full = 4;  // contacts that may push with all of it: their directions differ
+constexpr float least_share = 0.4f;  // of a thousand at one point too: they shall come apart
+constexpr int most_full = 4;         // contacts that may push with all of it: their directions differ
 
 float separation_speed(const WorldData& world, const ContactRecord& r) {
     return world.pairs.pairs[r.pair].fixed_a ? world.config.static_separation_speed
@@ -65,7 +66,8 @@ void limit_recovery(WorldData& world, float dt) {
         ContactRecord& r = world.records[i];
         int most = deep[static_cast<size_t>(r.body_a)], other = deep[static_cast<size_t>(r.body_b)];
         most = most > other ? most : other;
-        if (most > most_full) r.separation_speed *= static_cast<float>(most_full) / static_cast<float>(most);
+        if (most > most_full)
+            r.separation_speed *= maximum(static_cast<float>(most_full) / static_cast<float>(most), least_share);
     }
 }
 

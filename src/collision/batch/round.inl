@@ -213,7 +213,8 @@ void collide_box_balls(RoundBatch& batch, BatchManifold* out) {
         F on_edge = select(sharp, select(axes == splat<F>(2.0f), half, zero), a.rounding / radii);
         // Inside: the nearest face; ties go to the first axis, then to the positive side.
         Vec3T<F> depth{h.x - absolute(centre.x), h.y - absolute(centre.y), h.z - absolute(centre.z)};
-        auto by_x = (depth.x <= depth.y) & (depth.x <= depth.z), by_y = depth.y <= depth.z;
+        auto by_x = (depth.x <= depth.y) & (depth.x <= depth.z);
+        auto by_y = depth.y <= depth.z;
         F least = select(by_x, depth.x, select(by_y, depth.y, depth.z));
         Vec3T<F> face{select(by_x, sign_of(centre.x), zero), select(by_x, zero, select(by_y, sign_of(centre.y), zero)),
                       select(by_x, zero, select(by_y, zero, sign_of(centre.z)))};
