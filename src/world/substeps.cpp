@@ -21,7 +21,7 @@ constexpr float buckling_reserve = 1.7f;  // above the load at which a column of
 constexpr float resting_speed = 0.5f;     // m/s; what moves faster is no load but an impact
 constexpr float kept_reserve = 1.6f;  // a class is left only when fewer substeps would carry this many times the load
 constexpr int patience = 60;          // ... for so many steps: a column that has just stiffened springs up a little
-constexpr int insistence = 3;  // steps that a greater load must last: what lands carries many times its weight for one
+constexpr int calm_steps = 3;  // that a body must have been slow for: what lands carries many times its weight for one
 constexpr float first_reserve = 4.0f;  // of loads that are guessed: what is built at rest shall not begin by swinging
 
 uint32_t root(Array<uint32_t>& parent, uint32_t i) {
@@ -43,15 +43,19 @@ void begin_entry(WorldData& world, uint32_t slot) {
     IslandLoad& l = world.island_loads[slot];
     const bool known = l.step == world.steps || l.slept;
     const uint8_t before = known ? l.substeps : uint8_t{0}, waited = known ? l.waited : uint8_t{0};
-    const uint8_t urged = known ? l.urged : uint8_t{0};
+    const uint8_t calm = known ? l.calm : uint8_t{0};
     l = {};
     l.step = world.steps + 1;
     l.lowest = l.highest = dot(from_origin(bodies.pose[slot].position), world.config.gravity);
     l.before = before;
     l.waited = waited;
-    l.urged = urged;
     l.moves = moves(world, slot);
-    l.slow = length_squared(bodies.velocity(slot)) < resting_speed * resting_speed;
+    const bool slow = length_squared(bodies.velocity(slot)) < resting_speed * resting_speed;
+    l.calm = !l.moves            ? uint8_t{calm_steps}
+             : !slow             ? uint8_t{0}
+             : calm < calm_steps ? static_cast<uint8_t>(calm + 1)
+                                 : calm;
+    l.slow = l.calm >= calm_steps;
     l.inverse_mass = bodies.mass[slot].inverse_mass;
     l.radius = bodies.info[slot].radius;
     l.carried = bodies.mass[slot].mass * bodies.info[slot].gravity_factor;
@@ -87,7 +91,6 @@ uint32_t join(WorldData& world, uint32_t a, uint32_t b) {
     x.least = x.least > y.least ? x.least : y.least;
     x.before = x.before > y.before ? x.before : y.before;
     x.waited = x.waited < y.waited ? x.waited : y.waited;
-    x.urged = x.urged > y.urged ? x.urged : y.urged;
     x.tied |= y.tied;
     return a;
 }
@@ -127,15 +130,14 @@ int class_for(const IslandLoad& l, float gravity, float dt, int substeps, float 
 
 int larger(int a, int b) { return a > b ? a : b; }
 
-// Sets the class of a root: up once the load has lasted, down one at a time and with patience.
+// Sets the class of a root: up at once, down one at a time and with patience.
 void decide(IslandLoad& l, float gravity, float dt, int substeps) {
     l.decided = true;
     if (l.tied) return;
     int c = l.least;
     if (gravity > 0.0f) {
-        int kept = l.before, needed = class_for(l, gravity, dt, substeps, 1.0f);
-        l.urged = needed > kept ? static_cast<uint8_t>(l.urged + 1) : uint8_t{0};
-        if (l.urged >= insistence || l.certain) c = larger(c, needed), l.urged = 0;
+        int kept = l.before;
+        c = larger(c, class_for(l, gravity, dt, substeps, 1.0f));
         bool bearable = kept > 0 && class_for(l, gravity, dt, substeps, kept_reserve) < kept;
         l.waited = bearable ? static_cast<uint8_t>(l.waited + 1) : uint8_t{0};
         if (l.waited >= patience) --kept, l.waited = 0;
@@ -162,7 +164,6 @@ void add_joint_groups(WorldData& world, float dt) {
         IslandLoad& l = loads[root(world.load_parent, list[0].slot)];
         l.contacts += g.joints;
         l.sinking = maximum(l.sinking, 0.5f * sharper * g.sinking);
-        l.certain = true;
         l.least = g.least > l.least ? g.least : l.least;
     }
 }
@@ -217,7 +218,6 @@ void choose_substeps(WorldData& world, float dt) {
         for (const FirstLoad& f : world.first_loads) {
             IslandLoad& island = loads[root(world.load_parent, f.bodies.b)];
             count_load(world, island, world.records[f.record], f.bodies, f.lower != no_slot, weight, first_reserve);
-            island.certain = true;
         }
     }
     add_joint_groups(world, dt);
@@ -234,7 +234,6 @@ int substep_class(WorldData& world, uint32_t slot) {
     const IslandLoad& island = world.island_loads[root(world.load_parent, slot)];
     l.substeps = island.substeps;
     l.waited = island.waited;
-    l.urged = island.urged;
     return l.substeps;
 }
 

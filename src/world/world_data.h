@@ -49,16 +49,15 @@ struct alignas(64) IslandLoad {
     uint8_t least = 0;                      // class that its joints ask for
     uint8_t before = 0;                     // class in the step before
     uint8_t waited = 0;                     // steps since when fewer substeps would do
-    uint8_t urged = 0;                      // steps since when more substeps are needed
     uint8_t substeps = 0;                   // class
     bool tied = false;  // to other joints or a kinematic body in motion: takes the setting's substeps
     bool decided = false;
-    bool certain = false;  // loads that need not last first: what joints carry, and what is built at rest
     // Of the body itself.
     bool in_group = false;  // in one of WorldData::joint_groups
     bool held = false;      // rests on a contact that carries already
     bool slept = false;     // has slept since, and goes on from here when it wakes
     bool moves = false, slow = false;
+    uint8_t calm = 0;      // steps for which it has been slow, at most calm_steps; `slow`: for so many
     float carried = 0.0f;  // its mass and that of what new contacts put on it, kg
     float inverse_mass = 0.0f, radius = 0.0f;
 };

@@ -110,7 +110,7 @@ void body(Bytes& bytes, SavedBody& b) {
     if (b.asleep) bytes(b.momenta.x_low);
     else bytes(b.momenta, b.change);
     if (b.has_forces) bytes(b.forces);
-    if (b.loaded) bytes(b.substeps, b.waited, b.urged);
+    if (b.loaded) bytes(b.substeps, b.waited, b.calm);
 }
 
 template <class Bytes>

@@ -83,7 +83,7 @@ SavedBody capture_body(const WorldData& world, uint32_t slot) {
     if (slot < world.island_loads.size()) {
         const IslandLoad& load = world.island_loads[slot];
         b.loaded = (load.step == world.steps && world.steps > 0) || load.slept;
-        b.substeps = load.substeps, b.waited = load.waited, b.urged = load.urged;
+        b.substeps = load.substeps, b.waited = load.waited, b.calm = load.calm;
     }
     return b;
 }

@@ -128,7 +128,7 @@ void apply_body(WorldData& world, uint32_t slot, const SavedBody& b) {
     info.capped = b.capped, info.contained = b.contained, info.stopped = b.stopped;
     IslandLoad load{};
     load.step = b.loaded ? world.steps : 0;
-    load.substeps = b.substeps, load.waited = b.waited, load.urged = b.urged;
+    load.substeps = b.substeps, load.waited = b.waited, load.calm = b.calm;
     load.slept = b.loaded && b.asleep;
     world.island_loads[slot] = load;
 }

@@ -28,7 +28,7 @@ struct SavedBody {
     bool asleep = false, has_forces = false, placed = false, capped = false, contained = false, stopped = false;
     // Of the island that it was in: class of substeps, and how long fewer would have done.
     bool loaded = false;
-    uint8_t substeps = 0, waited = 0, urged = 0;
+    uint8_t substeps = 0, waited = 0, calm = 0;
 };
 
 struct SavedJoint {
