@@ -144,6 +144,31 @@ TEST(Mesh, ValleyTouchesBothSides) {
     EXPECT_NE(m[0].key, m[1].key);
 }
 
+// Two slopes of 4 degrees with a ridge along z: gentle, so that its faces stand for it wherever a shape lies over them.
+// Over the ridge itself, in the wedge between the faces' prisms, the closest points decide.
+TEST(Mesh, GentleRidgeHoldsWhatLiesAlongIt) {
+    const float slope = 0.07f;
+    Solid mesh(grid(8, 0.5f, [&](float x, float) { return -slope * absolute(x); }));
+    const Quat along_z = rotation_about({1.0f, 0.0f, 0.0f}, 0.5f * pi);
+    Solid capsule(Capsule{0.6f, 0.3f}), box(Box{{0.3f, 0.3f, 0.6f}});
+    for (float z : {-0.4f, 0.0f, 0.13f}) {
+        for (float x : {-0.02f, -0.004f, 0.0f, 0.004f, 0.02f}) {
+            std::vector<Manifold> m = on(mesh, capsule, {x, 0.29f, z}, along_z);
+            ASSERT_FALSE(m.empty()) << x;
+            float deepest_of_all = 1.0f;
+            for (const Manifold& one : m) {
+                deepest_of_all = minimum(deepest_of_all, deepest(one));
+                EXPECT_GT(one.normal.y, 0.99f) << x;
+            }
+            EXPECT_NEAR(deepest_of_all, std::hypot(x, 0.29f) - 0.3f, 1.5e-3f) << x;
+        }
+        std::vector<Manifold> m = on(mesh, box, {0.0f, 0.29f, z});
+        float deepest_of_all = 1.0f;
+        for (const Manifold& one : m) deepest_of_all = minimum(deepest_of_all, deepest(one));
+        EXPECT_NEAR(deepest_of_all, -0.01f, 1e-3f);
+    }
+}
+
 TEST(Mesh, ClosedBoxPushesOutOfItsTop) {
     // A box over the rim of a block made of triangles, sunk in by 1 cm and hanging over the side by 0.3 m and by 2 cm:
     // its centre is behind the side's triangles, which must not pull it in.
