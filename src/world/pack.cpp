@@ -170,6 +170,7 @@ void pack_bodies(WorldData& world, float dt) {
         awake += counts[c];
         world.parts[c].bodies = {begin, place};
     }
+    world.hard_bodies = awake - counts[0];
     world.solver_bodies.reset(place - reserved_bodies);
     world.awake.resize_unset(static_cast<size_t>(awake));
     for (uint32_t slot : world.movers.bodies) {

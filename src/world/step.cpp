@@ -108,6 +108,7 @@ void finish_step(WorldData& world, float dt) {
         row_bytes += solver.row_bytes();
     }
     s.joints = world.joints.count();
+    s.hard_bodies = world.hard_bodies;
     s.bytes_per_body = BodyStore::bytes_per_body() + sizeof(BodyState) + sizeof(BodyInertia) + sizeof(BodyStart) +
                        sizeof(BodyMotion) + sizeof(BodyPlace) + sizeof(BodyBlock) / block_bodies;
     s.bytes_per_manifold = sizeof(ContactRecord) + sizeof(FoundSeparations) + sizeof(ColliderPair) +

@@ -178,6 +178,7 @@ struct WorldData {
     size_t touched = 0;              // how many of them, in front, are in contact
     Array<FirstLoad> first_loads;    // of this step
     SolverPart parts[substep_classes];
+    int hard_bodies = 0;  // of classes above the setting's
     Solver solvers[substep_classes];
     Array<uint32_t> island_parent;  // union-find over body slots
     Array<float> island_still;

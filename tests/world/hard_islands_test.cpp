@@ -1,0 +1,56 @@
+// Which islands take more substeps than are set: those under load, and not what has just landed.
+#include <gtest/gtest.h>
+
+#include "world/support.h"
+
+namespace lendulet::testing {
+namespace {
+
+World awake_world() { return WorldBuilder{}.sleep(false).build().value(); }
+
+// The most bodies at a time that took more substeps.
+int most_hard(World& world, int steps) {
+    int most = 0;
+    for (int i = 0; i < steps; ++i) {
+        run(world, 1);
+        most = std::max(most, world.statistics().hard_bodies);
+    }
+    return most;
+}
+
+TEST(HardIslands, WhatLandsIsNoLoad) {
+    for (float height : {0.6f, 0.9f, 1.7f, 3.1f, 5.3f}) {
+        World world = awake_world();
+        add_floor(world);
+        for (int i = 0; i < 8; ++i) {
+            RigidBodyDef def{.shape = Box{{0.5f, 0.5f, 0.5f}}};
+            def.position = {3.0f * static_cast<float>(i), height + 0.07f * static_cast<float>(i), 0.0f};
+            if (i % 2 == 1) def.shape = Sphere{0.5f};
+            world.add_rigid_body(def).value();
+        }
+        EXPECT_EQ(most_hard(world, 150), 0) << height;
+    }
+}
+
+TEST(HardIslands, ColumnsAndHeavyOnLightTakeMore) {
+    World world = awake_world();
+    add_floor(world);
+    add_stack(world, 0.0f, 30);
+    EXPECT_EQ(most_hard(world, 1), 30);
+    World loaded = awake_world();
+    add_floor(loaded);
+    RigidBodyDef def{.shape = Box{{0.5f, 0.5f, 0.5f}}, .position = {0.0f, 0.5f, 0.0f}};
+    def.mass = 1.0f;
+    loaded.add_rigid_body(def).value();
+    run(loaded, 30);
+    EXPECT_EQ(loaded.statistics().hard_bodies, 0);
+    // Dropped on it, it counts once both have been slow for three steps.
+    def.position.y = 1.7f;
+    def.mass = 1000.0f;
+    loaded.add_rigid_body(def).value();
+    run(loaded, 60);
+    EXPECT_EQ(loaded.statistics().hard_bodies, 2);
+}
+
+}  // namespace
+}  // namespace lendulet::testing
