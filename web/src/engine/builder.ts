@@ -1,15 +1,8 @@
 // Building in a world of the engine in the page: shapes, bodies, joints (lendulet_add_… of lendulet_c.h).
 import type { PageWorld } from "./engine";
-import type { BodyType, JointType, ShapeType } from "./types";
+import type { BodyType, Collider, JointType } from "./types";
 
-export interface Part {
-    type: ShapeType;
-    mesh: number;
-    trigger: boolean;
-    size: number[];
-    rounding: number;
-    position: number[];
-    orientation: number[];
+export interface Part extends Omit<Collider, "body" | "bodyType"> {
     density: number;
     friction: number; // negative: the world's
     restitution: number;
