@@ -54,7 +54,17 @@ public:
             const_cast<void*>(static_cast<const void*>(&body)));
     }
 
+    // The same for loops of many small pieces of equal cost: a few chunks a worker, of `least` or more. In loops of one
+    // count a worker gets the same chunks as before, if it comes in time, and finds what it wrote in its own caches.
+    template <class Body>
+    void share(int count, int least, Body&& body) {
+        const int even = (count + chunks_per_worker * workers_ - 1) / (chunks_per_worker * workers_);
+        for_each(count, even > least ? even : least, body);
+    }
+
 private:
+    static constexpr int chunks_per_worker = 2;
+
     void dispatch(int count, int grain, Run run, void* context);
     void begin_session();
     void end_session();

@@ -7,8 +7,11 @@
 namespace lendulet {
 namespace {
 
-// By room for points; those that resist rolling are classes of their own.
-constexpr int size_classes = 3, contact_classes = 2 * size_classes;
+// By room for points, the largest first; those that resist rolling are classes of their own.
+constexpr int four_points = 0, two_points = 1, size_classes = 3, contact_classes = 2 * size_classes;
+int class_of(const ContactRecord& r) {
+    return size_classes - 1 - row_class(r.point_count) + ((r.flags & contact_rolls) != 0 ? size_classes : 0);
+}
 
 // Lowest colour free at all given bodies, or -1.
 int free_colour(uint32_t used, int colours) {
@@ -16,30 +19,48 @@ int free_colour(uint32_t used, int colours) {
     return c < colours ? c : -1;
 }
 
+// Whether nearly all contacts lie within tiles: a sample is enough, as it is but a question of speed. Others are solved
+// faster in long loops, since the rows of a tile by colour and class often end with empty lanes.
+bool keeps_together(const ContactRecord* records, const uint32_t* list, int count, const Tiles& tiles) {
+    constexpr int every = 8, most_between = 12;  // contacts; % of the sample
+    if (tiles.count == 1) return true;
+    int between = 0;
+    for (int i = 0; i < count; i += every) {
+        if (i + every * prefetch_distance < count) prefetch(&records[list[i + every * prefetch_distance]]);
+        const ContactRecord& r = records[list[i]];
+        between += tiles.of(r.body_a, r.body_b) == tiles.count;
+    }
+    return 100 * between <= most_between * (count / every);
+}
+
 }  // namespace
 
-void ColourSorter::begin(int bodies, int constraints, int classes) {
+void ColourSorter::begin(int bodies, int constraints, int classes, Tiles tiles) {
     classes_ = classes;
-    used_moving_.assign(static_cast<size_t>(bodies), 0u);
+    tiles_ = tiles;
+    used_inside_.assign(tiles.count > 1 ? static_cast<size_t>(bodies) : 0, 0u);
+    used_between_.assign(static_cast<size_t>(bodies), 0u);
     used_fixed_.assign(static_cast<size_t>(bodies), 0u);
     keys_.clear();
     keys_.reserve(static_cast<size_t>(constraints));
-    counts_.assign(static_cast<size_t>(colours * classes) + 1, 0u);
+    counts_.assign(static_cast<size_t>((tiles.count + 1) * colours * classes) + 1, 0u);
 }
 
 void ColourSorter::add(int32_t a, bool moved_a, int32_t b, bool moved_b, int constraint_class) {
-    size_t i = static_cast<size_t>(a), j = static_cast<size_t>(b);
+    const size_t i = static_cast<size_t>(a), j = static_cast<size_t>(b);
+    const int tile = tiles_.of(a, b);
     int colour;
     if (moved_a && moved_b) {
-        colour = free_colour(used_moving_[i] | used_moving_[j], moving_colours);
-        if (colour >= 0) used_moving_[i] |= 1u << colour, used_moving_[j] |= 1u << colour;
+        Array<uint32_t>& used = tile < tiles_.count ? used_inside_ : used_between_;
+        colour = free_colour(used[i] | used[j], moving_colours);
+        if (colour >= 0) used[i] |= 1u << colour, used[j] |= 1u << colour;
     } else {
         uint32_t& used = used_fixed_[moved_a ? i : j];
         colour = free_colour(used, fixed_colours);
         if (colour >= 0) used |= 1u << colour, colour += moving_colours;
     }
     if (colour < 0) colour = overflow_colour;
-    keys_.push_back(static_cast<uint16_t>(colour * classes_ + constraint_class));
+    keys_.push_back(static_cast<uint32_t>((tile * colours + colour) * classes_ + constraint_class));
     ++counts_[keys_.back() + 1u];
 }
 
@@ -47,63 +68,92 @@ void ColourSorter::end() {
     for (size_t k = 1; k < counts_.size(); ++k) counts_[k] += counts_[k - 1];
 }
 
-void ColourSchedule::build(const ContactRecord* records, ContactExtra* extras, const uint32_t* list, int count,
-                           const SolverBodies& bodies, const SolverKernels& kernels,
-                           const SolverKernels& scalar_kernels) {
-    groups.clear();
-    colour_ends.clear();
-    first_overflow_group = overflow = 0;
-    rows.resize_unset(0);
-    if (count == 0) return;
-    sorter_.begin(bodies.count, count, contact_classes);
+void ColourSchedule::colour(const ContactRecord* records, const uint32_t* list, int count, const SolverBodies& bodies) {
+    sorter_.begin(bodies.count, count, contact_classes, tiles);
     for (int i = 0; i < count; ++i) {
         if (i + prefetch_distance < count) prefetch(&records[list[i + prefetch_distance]]);
         const ContactRecord& r = records[list[i]];
         bool moved_a = bodies.state[static_cast<size_t>(r.body_a)].inverse_mass > 0.0f;
-        sorter_.add(r.body_a, moved_a, r.body_b, true,
-                    row_class(r.point_count) + ((r.flags & contact_rolls) != 0 ? size_classes : 0));
+        sorter_.add(r.body_a, moved_a, r.body_b, true, class_of(r));
     }
     sorter_.end();
+}
 
-    // Groups in solving order with their place in `order`.
-    order.resize_unset(static_cast<size_t>(count));
-    size_t bytes = 0;
-    int last_colour = -1;
-    first_overflow_group = -1;
-    sorter_.for_each_group([&](int colour, int c, uint32_t begin, uint32_t n) {
-        bool alone = colour == ColourSorter::overflow_colour;
-        if (alone && first_overflow_group < 0) first_overflow_group = groups.count();
-        if (colour != last_colour && last_colour >= 0) colour_ends.push_back(groups.count());
-        last_colour = colour;
-        const SolverKernels& table = alone ? scalar_kernels : kernels;
-        ContactGroup g;
-        const bool rolls = c >= size_classes;
-        const int size = c % size_classes;
-        g.points = 1 << size;
-        g.fixed_a = colour >= ColourSorter::moving_colours && !alone;
-        g.filler = size;
-        g.count = static_cast<int>(n);
-        g.order = order.data() + begin;
-        g.rows = reinterpret_cast<std::byte*>(bytes);  // an offset until the block is allocated below
-        bytes += table.row_bytes[size] * block_count(n, table.width);
-        g.rolling = nullptr;
-        g.extras = nullptr;
-        if (rolls) {
-            g.rolling = reinterpret_cast<std::byte*>(bytes);
-            g.extras = extras;
-            bytes += table.rolling_bytes * block_count(n, table.width);
+// Groups in solving order with their place in `order`. Room for four points that the last rows of a colour have left is
+// filled with manifolds of two: with points that are not there a row gives the same bits. How many must not depend on
+// the width.
+void ColourSchedule::make_groups(ContactExtra* extras) {
+    constexpr int whole = 16;
+    int numbers[2][ColourSorter::colours], last_between = -1;
+    for (auto& list : numbers)
+        for (int& n : list) n = -1;
+    int open_tile = -1;  // that of the last group, where that has room for more
+    sorter_.for_each_group([&](int tile, int colour, int c, uint32_t begin, uint32_t n) {
+        const bool outside = tile == tiles.count;
+        while (tile_ends.count() < tile) tile_ends.push_back(groups.count());
+        if (outside && last_between >= 0 && colour != last_between) colour_ends.push_back(groups.count());
+        if (outside) last_between = colour;
+        int& number = numbers[outside][colour];
+        if (number < 0) number = colours++;
+        int count = static_cast<int>(n);
+        if (open_tile == tile && groups.back().colour == number && c == two_points) {
+            int& fours = groups.back().count;
+            const int spare = (whole - fours % whole) % whole, taken = spare < count ? spare : count;
+            fours += taken;
+            begin += static_cast<uint32_t>(taken), count -= taken;
         }
+        open_tile = -1;
+        if (count == 0) return;
+        ContactGroup g{};
+        g.points = 4 >> (c % size_classes);
+        g.alone = colour == ColourSorter::overflow_colour;
+        g.fixed_a = colour >= ColourSorter::moving_colours && !g.alone;
+        g.filler = outside ? c : tiles.filler(tile);
+        g.colour = number;
+        g.count = count;
+        g.order = order.data() + begin;
+        g.extras = c >= size_classes ? extras : nullptr;
         groups.push_back(g);
+        overflow += g.alone ? count : 0;
+        if (c == four_points && !g.alone) open_tile = tile;
     });
-    if (groups.count() > 0) colour_ends.push_back(groups.count());
-    if (first_overflow_group < 0) first_overflow_group = groups.count();
-    overflow = sorter_.overflow();
+    if (last_between >= 0) colour_ends.push_back(groups.count());
+}
+
+void ColourSchedule::place_rows(const SolverKernels& kernels, const SolverKernels& scalar_kernels) {
+    size_t bytes = 0;
+    auto place = [&](size_t size) {  // an offset until there is memory
+        auto* at = reinterpret_cast<std::byte*>(bytes);
+        bytes += size;
+        return at;
+    };
+    for (ContactGroup& g : groups) {
+        const SolverKernels& table = g.alone ? scalar_kernels : kernels;
+        const size_t blocks = block_count(static_cast<uint32_t>(g.count), table.width);
+        g.rows = place(table.row_bytes[row_class(g.points)] * blocks);
+        g.rolling = place(g.extras ? table.rolling_bytes * blocks : 0);
+    }
     rows.resize_unset(bytes);
     for (ContactGroup& g : groups) {
         g.rows = rows.data() + reinterpret_cast<size_t>(g.rows);
-        if (g.extras) g.rolling = rows.data() + reinterpret_cast<size_t>(g.rolling);
+        g.rolling = g.extras ? rows.data() + reinterpret_cast<size_t>(g.rolling) : nullptr;
     }
-    sorter_.fill([&](uint32_t place, uint32_t i) { order[place] = list[i]; });
+}
+
+void ColourSchedule::build(const ContactRecord* records, ContactExtra* extras, const uint32_t* list, int count,
+                           const SolverBodies& bodies, Tiles cut, const SolverKernels& kernels,
+                           const SolverKernels& scalar_kernels) {
+    groups.clear();
+    tile_ends.clear();
+    colour_ends.clear();
+    colours = overflow = 0;
+    tiles = keeps_together(records, list, count, cut) ? cut : Tiles{};
+    order.resize_unset(static_cast<size_t>(count));
+    if (count > 0) colour(records, list, count, bodies);
+    if (count > 0) make_groups(extras);
+    while (tile_ends.count() < tiles.count) tile_ends.push_back(groups.count());
+    place_rows(kernels, scalar_kernels);
+    if (count > 0) sorter_.fill([&](uint32_t place, uint32_t i) { order[place] = list[i]; });
 }
 
 }  // namespace lendulet

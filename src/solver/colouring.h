@@ -5,6 +5,10 @@
 // static or kinematic body have colours of their own, solved last in every pass: what rests on the ground is then as
 // exact as an iteration can leave it. Constraints that find no free colour (a body with very many neighbours) overflow
 // and are solved one by one.
+//
+// Many bodies are cut into tiles that fit into the second-level cache with their constraints. Constraints inside a tile
+// are coloured for the tile alone, which one thread solves from end to end; those between two tiles are coloured
+// together, with a barrier after each colour.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +16,7 @@
 #include "base/memory.h"
 #include "solver/contact.h"
 #include "solver/kernels.h"
+#include "solver/tiles.h"
 
 namespace lendulet {
 
@@ -20,37 +25,37 @@ inline size_t block_count(uint32_t n, int width) {
     return (n + static_cast<uint32_t>(width) - 1) / static_cast<uint32_t>(width);
 }
 
-// Gives each constraint of a list a colour and sorts the list by colour and class, both stably.
+// Gives each constraint of a list a colour and sorts the list by tile, colour and class, all stably.
 class ColourSorter {
 public:
     static constexpr int moving_colours = 32, fixed_colours = 16;
     static constexpr int overflow_colour = moving_colours + fixed_colours, colours = overflow_colour + 1;
 
     explicit ColourSorter(const Memory* memory)
-        : used_moving_(memory), used_fixed_(memory), keys_(memory), counts_(memory) {}
+        : used_inside_(memory), used_between_(memory), used_fixed_(memory), keys_(memory), counts_(memory) {}
 
-    void begin(int bodies, int constraints, int classes);
+    void begin(int bodies, int constraints, int classes, Tiles tiles = {});
     // The next constraint, between two bodies of which at least one is moved.
     void add(int32_t a, bool moved_a, int32_t b, bool moved_b, int constraint_class);
     void end();
     // See ColourSchedule.
     void make_room(const ColourSorter& other) {
-        used_moving_.reserve(other.used_moving_.size());
+        used_inside_.reserve(other.used_inside_.size());
+        used_between_.reserve(other.used_between_.size());
         used_fixed_.reserve(other.used_fixed_.size());
         keys_.reserve(keys_.size() + other.keys_.size());
         counts_.reserve(other.counts_.size());
     }
-    // Calls group(colour, class, begin, count) for every group that is not empty, by colour, then class: its
-    // constraints are to be found in [begin, begin + count) of what fill() writes.
+    // Calls group(tile, colour, class, begin, count) for every group that is not empty, by tile, then colour, then class:
+    // its constraints are to be found in [begin, begin + count) of what fill() writes. Tile `count` is what lies between
+    // tiles, and all where there is but one.
     template <class Group>
     void for_each_group(Group&& group) const {
-        for (int key = 0; key < colours * classes_; ++key) {
+        const int per_tile = colours * classes_;
+        for (int key = 0; key < (tiles_.count + 1) * per_tile; ++key) {
             uint32_t first = counts_[static_cast<size_t>(key)], n = counts_[static_cast<size_t>(key) + 1] - first;
-            if (n > 0) group(key / classes_, key % classes_, first, n);
+            if (n > 0) group(key / per_tile, key % per_tile / classes_, key % classes_, first, n);
         }
-    }
-    int overflow() const {
-        return static_cast<int>(counts_.back() - counts_[static_cast<size_t>(overflow_colour * classes_)]);
     }
     // Calls put(place, i) for every constraint i in order of the list; last call.
     template <class Put>
@@ -59,38 +64,58 @@ public:
     }
 
 private:
-    Array<uint32_t> used_moving_, used_fixed_;  // a bit per colour and body
-    Array<uint16_t> keys_;
+    // A bit per colour and body, of constraints in its tile, with another one's body and with what is not moved.
+    Array<uint32_t> used_inside_, used_between_, used_fixed_;
+    Array<uint32_t> keys_;
     Array<uint32_t> counts_;
     int classes_ = 1;
+    Tiles tiles_;
 };
 
 struct ColourSchedule {
     Array<uint32_t> order;       // indices of records, by group
-    Array<ContactGroup> groups;  // in the order in which they are solved
-    Array<int> colour_ends;      // one past the last group of each colour: a barrier follows
+    Array<ContactGroup> groups;  // those of each tile in the order in which they are solved, then those between tiles
+    Array<int> tile_ends;        // one past the last group of each tile
+    Array<int> colour_ends;      // one past the last group of each colour between tiles: a barrier follows
     Array<std::byte> rows;
-    int first_overflow_group = 0;  // groups from here on hold manifolds that share bodies: one lane, one thread
-    int overflow = 0;
+    Tiles tiles;
+    int colours = 0;   // numbers of colours given, see ContactGroup
+    int overflow = 0;  // manifolds that share bodies: one lane, one thread
 
     explicit ColourSchedule(const Memory* memory)
-        : order(memory), groups(memory), colour_ends(memory), rows(memory), sorter_(memory) {}
+        : order(memory),
+          groups(memory),
+          tile_ends(memory),
+          colour_ends(memory),
+          rows(memory),
+          sorter_(memory) {}
 
-    // Colours the `count` records that `list` names. Where only one body of a record is moved, it is B. `extras`, by
-    // record, may be null where no contact resists rolling.
+    // Colours the `count` records that `list` names, all of bodies in these tiles, and takes the tiles for one where too
+    // many lie between them. Where only one body of a record is moved, it is B. `extras`, by record, may be null where
+    // no contact resists rolling.
     void build(const ContactRecord* records, ContactExtra* extras, const uint32_t* list, int count,
-               const SolverBodies& bodies, const SolverKernels& kernels, const SolverKernels& scalar_kernels);
-    int colour_count() const { return colour_ends.count(); }
+               const SolverBodies& bodies, Tiles cut, const SolverKernels& kernels,
+               const SolverKernels& scalar_kernels);
+    // Groups of a tile; of all that lies between tiles where `tile` is their count.
+    int first_group(int tile) const { return tile == 0 ? 0 : tile_ends[static_cast<size_t>(tile) - 1]; }
+    int last_group(int tile) const {
+        return tile < tiles.count ? tile_ends[static_cast<size_t>(tile)] : groups.count();
+    }
     // So that it can hold what `other` holds as well without asking for memory; before build().
     void make_room(const ColourSchedule& other) {
         order.reserve(order.size() + other.order.size());
         groups.reserve(groups.size() + other.groups.size());
+        tile_ends.reserve(tile_ends.size() + other.tile_ends.size());
         colour_ends.reserve(colour_ends.size() + other.colour_ends.size());
         rows.reserve(rows.size() + other.rows.size());
         sorter_.make_room(other.sorter_);
     }
 
 private:
+    void colour(const ContactRecord* records, const uint32_t* list, int count, const SolverBodies& bodies);
+    void make_groups(ContactExtra* extras);
+    void place_rows(const SolverKernels& kernels, const SolverKernels& scalar_kernels);
+
     ColourSorter sorter_;
 };
 

@@ -29,6 +29,8 @@ struct SubstepConstants {
 struct ContactGroup {
     int points;      // rows have room for 1, 2 or 4
     bool fixed_a;    // A is static or kinematic in all of them: not stored
+    bool alone;      // manifolds share bodies: one lane, one thread
+    int colour;      // its number: groups of one number share no body
     int32_t filler;  // reserved body for the empty lanes of the last block
     int count;
     const uint32_t* order;  // indices of the records

@@ -32,23 +32,77 @@ SubstepConstants substep_constants(const SolverSettings& settings) {
 }
 
 template <class Run>
-void Solver::for_each_group(TaskPool& tasks, Run&& run) {
-    for (int i = 0; i < schedule_.groups.count(); ++i) {
+void Solver::run_groups(int first, int last, Run&& run) const {
+    for (int i = first; i < last; ++i) {
         const ContactGroup& g = schedule_.groups[static_cast<size_t>(i)];
-        if (i >= schedule_.first_overflow_group) {
-            run(scalar_, g, 0, g.count);
-            continue;
-        }
-        int blocks = (g.count + kernels_.width - 1) / kernels_.width;
-        int grain = contacts_per_task / kernels_.width;
-        tasks.for_each(blocks, grain, [&](int begin, int end, int) { run(kernels_, g, begin, end); });
+        if (g.alone) run(scalar_, g, 0, g.count);
+        else run(kernels_, g, 0, static_cast<int>(block_count(static_cast<uint32_t>(g.count), kernels_.width)));
     }
 }
 
+template <class Run>
+void Solver::for_each_between(TaskPool& tasks, Run&& run) const {
+    int first = schedule_.first_group(schedule_.tiles.count);
+    for (int last : schedule_.colour_ends) {
+        const ContactGroup* groups = schedule_.groups.data() + first;
+        int blocks = 0;
+        for (int i = first; i < last; ++i)
+            blocks += static_cast<int>(block_count(static_cast<uint32_t>(groups[i - first].count), kernels_.width));
+        if (groups->alone || tasks.workers() == 1) {
+            run_groups(first, last, run);
+        } else {
+            // The groups of a colour end to end, in parts of even size.
+            tasks.share(blocks, contacts_per_task / kernels_.width, [&](int begin, int end, int) {
+                for (const ContactGroup* g = groups; begin < end; ++g) {
+                    const int n = static_cast<int>(block_count(static_cast<uint32_t>(g->count), kernels_.width));
+                    if (begin < n) run(kernels_, *g, begin, end < n ? end : n);
+                    begin = begin > n ? begin - n : 0;
+                    end -= n;
+                }
+            });
+        }
+        first = last;
+    }
+}
+
+template <class Run>
+void Solver::for_each_group(TaskPool& tasks, Run&& run) const {
+    const int tiles = schedule_.tiles.count;
+    tasks.share(tiles, 1, [&](int begin, int end, int) {
+        run_groups(schedule_.first_group(begin), schedule_.last_group(end - 1), run);
+    });
+    for_each_between(tasks, run);
+}
+
+template <class Run>
+void Solver::for_each_tile(TaskPool& tasks, BodyRange range, Run&& run) const {
+    const Tiles& tiles = schedule_.tiles;
+    if (tiles.count == 1) {
+        for_each_body_block(tasks, range, [&](int begin, int end) { run(0, BodyRange{begin, end}); });
+        return;
+    }
+    tasks.share(tiles.count, 1, [&](int begin, int end, int) {
+        for (int tile = begin; tile < end; ++tile) run(tile, tiles.bodies(tile));
+    });
+}
+
+void Solver::pass_tile(int tile, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const {
+    run_groups(schedule_.first_group(tile), schedule_.last_group(tile),
+               [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
+                   (kernels.*pass)(g, bodies, k, begin, end);
+               });
+}
+
+void Solver::pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const {
+    for_each_between(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
+        (kernels.*pass)(g, bodies, k, begin, end);
+    });
+}
+
 void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, const uint32_t* list,
-                     int count, ContactExtra* extras) {
+                     int count, Tiles tiles, ContactExtra* extras) {
     extras_ = extras;
-    schedule_.build(records, extras, list, count, bodies, kernels_, scalar_);
+    schedule_.build(records, extras, list, count, bodies, tiles, kernels_, scalar_);
     bouncing_.clear();
     for (int i = 0; i < count; ++i) {
         if (i + prefetch_distance < count) prefetch(&records[list[i + prefetch_distance]].restitution);
@@ -64,35 +118,48 @@ void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joi
     joints_.prepare(tasks, bodies, joints, contacts, reuse);
 }
 
+// A tile is relaxed last and solved first, so that it is gone through at one go from one substep to the next; what lies
+// between tiles is solved after all tiles and relaxed before them.
 void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
                    BodyRange range) {
     if (range.begin >= range.end) return;
+    const Pass warm_start = &SolverKernels::warm_start, solve = &SolverKernels::solve, relax = &SolverKernels::relax;
     SubstepConstants k = substep_constants(settings);
     k.joints = !joints_.empty();
-    for_each_body_block(tasks, range, [&](int begin, int end) { kernels_.begin_step(bodies, begin, end); });
+    for_each_tile(tasks, range, [&](int, BodyRange r) { kernels_.begin_step(bodies, r.begin, r.end); });
     for (int substep = 0; substep < settings.substeps; ++substep) {
+        const SubstepConstants before = k;
         k.first = substep == 0;
         k.last = substep == settings.substeps - 1;
         k.repeat_scale = substep == 1 ? 2.0f : 1.0f;  // the first substep began with half a kick
         k.end_scale = settings.substeps > 1 ? 0.5f : 1.0f;
-        k.moved = resolve_impacts(bodies, records, {bouncing_.data(), bouncing_.count(), extras_}, k);
-        for_each_body_block(tasks, range, [&](int begin, int end) { kernels_.kick(bodies, k, begin, end); });
-        if (k.first)
-            for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
-                kernels.warm_start(g, bodies, k, begin, end);
-            });
+        // Impacts look at all bodies at once, and so do joints and the first warm start.
+        bool relaxed = k.first;
+        if (!bouncing_.empty()) {
+            if (!relaxed) for_each_tile(tasks, range, [&](int tile, BodyRange) { pass_tile(tile, bodies, before, relax); });
+            relaxed = true;
+            k.moved = resolve_impacts(bodies, records, {bouncing_.data(), bouncing_.count(), extras_}, k);
+        }
+        for_each_tile(tasks, range, [&](int tile, BodyRange r) {
+            if (!relaxed) pass_tile(tile, bodies, before, relax);
+            kernels_.kick(bodies, k, r.begin, r.end);
+            if (k.first) pass_tile(tile, bodies, k, warm_start);
+        });
+        if (k.first) pass_between(tasks, bodies, k, warm_start);
         if (k.joints && k.first) joints_.warm_start(tasks, bodies);
         if (k.joints) joints_.biased(tasks, bodies, k);
-        for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
-            kernels.solve(g, bodies, k, begin, end);
+        pass_between(tasks, bodies, k, solve);
+        for_each_tile(tasks, range, [&](int tile, BodyRange r) {
+            pass_tile(tile, bodies, k, solve);
+            kernels_.drift(bodies, k, r.begin, r.end);
         });
-        for_each_body_block(tasks, range, [&](int begin, int end) { kernels_.drift(bodies, k, begin, end); });
         if (k.joints) joints_.relax(tasks, bodies, k);
-        for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
-            kernels.relax(g, bodies, k, begin, end);
-        });
+        pass_between(tasks, bodies, k, relax);
     }
-    for_each_body_block(tasks, range, [&](int begin, int end) { kernels_.settle(bodies, begin, end); });
+    for_each_tile(tasks, range, [&](int tile, BodyRange r) {
+        pass_tile(tile, bodies, k, relax);
+        kernels_.settle(bodies, r.begin, r.end);
+    });
 }
 
 void Solver::store(TaskPool& tasks, ContactRecord* records) {

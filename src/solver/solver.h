@@ -44,9 +44,9 @@ public:
           scalar_(solver_kernels(1)) {}
 
     // Colours the manifolds that `list` names and packs them into rows. `extras`, by record: see ContactExtra; null
-    // where no material has any.
+    // where no material has any. `tiles`: how the bodies are cut that solve() is given.
     void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, const uint32_t* list, int count,
-                 ContactExtra* extras = nullptr);
+                 Tiles tiles = {}, ContactExtra* extras = nullptr);
     // So that contacts of `other` may become this one's without asking for memory; before prepare().
     void make_room(const Solver& other) {
         schedule_.make_room(other.schedule_);
@@ -70,23 +70,30 @@ public:
     // Calls visit(record, colour) for every contact that the last prepare() coloured.
     template <class Visit>
     void for_each_coloured(Visit&& visit) const {
-        int colour = 0;
-        for (int g = 0; g < schedule_.groups.count(); ++g) {
-            while (g >= schedule_.colour_ends[static_cast<size_t>(colour)]) ++colour;
-            const ContactGroup& group = schedule_.groups[static_cast<size_t>(g)];
-            for (int i = 0; i < group.count; ++i) visit(group.order[i], colour);
-        }
+        for (const ContactGroup& group : schedule_.groups)
+            for (int i = 0; i < group.count; ++i) visit(group.order[i], group.colour);
     }
-    int colour_count() const { return schedule_.colour_count(); }
+    int colour_count() const { return schedule_.colours; }
     int overflow() const { return schedule_.overflow; }
     const JointSolver& joints() const { return joints_; }
     size_t row_bytes() const { return schedule_.rows.size(); }
 
 private:
-    // Calls run(kernels, group, begin, end) for every group, colour after colour.
+    // Calls run(kernels, group, begin, end) for all groups [first, last).
     template <class Run>
-    void for_each_group(TaskPool& tasks, Run&& run);
-
+    void run_groups(int first, int last, Run&& run) const;
+    // The same for those between tiles, colour after colour; workers share a colour.
+    template <class Run>
+    void for_each_between(TaskPool& tasks, Run&& run) const;
+    // And for all, in no order.
+    template <class Run>
+    void for_each_group(TaskPool& tasks, Run&& run) const;
+    // Calls run(tile, bodies) for every tile, or for parts of the only one.
+    template <class Run>
+    void for_each_tile(TaskPool& tasks, BodyRange range, Run&& run) const;
+    using Pass = void (*SolverKernels::*)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int, int);
+    void pass_tile(int tile, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
+    void pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
     ColourSchedule schedule_;
     Array<uint32_t> bouncing_;  // records that can bounce
     const ContactExtra* extras_ = nullptr;

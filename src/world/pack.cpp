@@ -150,7 +150,7 @@ void unpack_body(WorldData& world, size_t i, float dt) {
 
 void pack_bodies(WorldData& world, float dt) {
     BodyStore& bodies = world.bodies;
-    // Places within the class first, then behind the classes before: each begins a block of its own.
+    // By class; each begins a tile of its own.
     int counts[substep_classes] = {};
     for (uint32_t slot : world.movers.bodies) {
         BodyInfo& info = bodies.info[slot];
@@ -161,27 +161,27 @@ void pack_bodies(WorldData& world, float dt) {
         info.solver_index = packed ? -1 - substep_class(world, slot) : static_body;
         if (packed) ++counts[-1 - info.solver_index];
     }
-    int places[substep_classes], firsts[substep_classes], place = reserved_bodies, awake = 0;
+    int firsts[substep_classes], place = reserved_bodies, awake = 0;
     for (int c = 0; c < substep_classes; ++c) {
-        places[c] = place;
+        const TilePlaces places(place, counts[c]);
+        world.parts[c].bodies = {place, places.end()};
+        place = places.end();
         firsts[c] = awake;
-        int begin = c == 0 ? 0 : place, end = place + counts[c];
-        place = (end + block_bodies - 1) / block_bodies * block_bodies;
         awake += counts[c];
-        world.parts[c].bodies = {begin, place};
     }
     world.hard_bodies = awake - counts[0];
     world.solver_bodies.reset(place - reserved_bodies);
     world.awake.resize_unset(static_cast<size_t>(awake));
     for (uint32_t slot : world.movers.bodies) {
-        int32_t& index = bodies.info[slot].solver_index;
-        if (index >= 0) continue;
-        int c = -1 - index;
-        world.awake[static_cast<size_t>(firsts[c]++)] = slot;
-        index = places[c]++;
+        const int32_t index = bodies.info[slot].solver_index;
+        if (index < 0) world.awake[static_cast<size_t>(firsts[-1 - index]++)] = slot;
     }
-    for (int c = 0; c < substep_classes; ++c)
-        for (int i = places[c]; i < world.parts[c].bodies.end; ++i) world.solver_bodies.set_at_rest(i);
+    const uint32_t* next = world.awake.data();
+    for (int c = 0; c < substep_classes; ++c) {
+        TilePlaces places(world.parts[c].bodies.begin, counts[c]);
+        for (int i = 0; i < counts[c]; ++i) bodies.info[*next++].solver_index = places.take();
+        places.for_each_empty([&](int i) { world.solver_bodies.set_at_rest(i); });
+    }
     world.tasks.for_each(world.awake.count(), bodies_per_task, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i) pack_body(world, static_cast<size_t>(i), dt);
     });

@@ -38,7 +38,8 @@ void prepare_solvers(WorldData& world, float dt) {
         const SolverPart& part = world.parts[c];
         ContactList contacts{records, world.active.data() + part.first_contact, part.contact_count, dt};
         world.solvers[c].prepare(world.tasks, world.solver_bodies, records, world.active.data() + part.first_contact,
-                                 part.contact_count, world.has_extras ? world.extras.data() : nullptr);
+                                 part.contact_count, Tiles(part.bodies),
+                                 world.has_extras ? world.extras.data() : nullptr);
         JointList joints{world.joint_records.data() + part.first_joint, part.joint_count, world.joint_axes.data()};
         world.solvers[c].prepare_joints(world.tasks, world.solver_bodies, joints, contacts, reuse);
         // Islands go up by any number of classes and come down one by one, also long after all has come to rest.
