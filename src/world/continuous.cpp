@@ -65,16 +65,38 @@ float reach_of(const BodyPath& path, float radius) {
     return length(path.end.position - path.start.position) + minimum(absolute(path.angle), full_turn) * radius;
 }
 
-// The same from above, from what the solver has at hand and in a fraction of the time. A body that spun by less than
-// half a turn has turned by the angle between its orientations, which is at most pi times the sine of its half.
-float most_reach_of(const WorldData& world, uint32_t body, float dt) {
+constexpr float most = 1.01f;  // makes up for rounding where something is computed from above
+
+// How far the body turned at most, from what the solver has at hand. One that spun by less than half a turn has turned
+// by the angle between its orientations, which is at most pi times the sine of its half.
+float most_turn_of(const WorldData& world, uint32_t body, float dt) {
     const auto index = static_cast<size_t>(world.bodies.info[body].solver_index);
     const BodyState& state = world.solver_bodies.state[index];
     const BodyStart& start = world.solver_bodies.start[index];
     Vec3 spin = Vec3{start.w[0], start.w[1], start.w[2]} + 0.5f * Vec3{state.w[0], state.w[1], state.w[2]};
     float sine = length(Vec3{state.dq[0], state.dq[1], state.dq[2]});
-    float angle = dt * length(spin) < 3.0f ? minimum(pi * sine, full_turn) : full_turn;
-    return 1.01f * (length(Vec3{state.dp[0], state.dp[1], state.dp[2]}) + angle * world.bodies.info[body].radius);
+    return most * (dt * length(spin) < 3.0f ? minimum(pi * sine, full_turn) : full_turn);
+}
+
+// What reach_of() is at most, in a fraction of the time.
+float most_reach_of(const WorldData& world, uint32_t body, float dt) {
+    const BodyInfo& info = world.bodies.info[body];
+    const float* dp = world.solver_bodies.state[static_cast<size_t>(info.solver_index)].dp;
+    return most * length(Vec3{dp[0], dp[1], dp[2]}) + most_turn_of(world, body, dt) * info.radius;
+}
+
+// How far any point of `body` moved at most as another one, which went along `path`, saw it: a body that goes along with
+// a great drum hardly moves against its wall, however fast both are.
+float most_reach_against(const WorldData& world, uint32_t body, const BodyPath& path, float dt) {
+    const Position start = world.continuous.start[place_of(world, body)].position, end = world.bodies.pose[body].position;
+    const float turn = absolute(path.angle);
+    if (turn > 1.0f) return 3e38f;
+    const Vec3 arm = rotate(rotation_about(path.axis, path.angle), start - path.start.position);
+    const Position carried = path.end.position + arm;
+    // The carrier's velocity there changes its direction by `turn`: by half of that from its mean at most.
+    const float bend = 0.5f * turn * length(carried - start);
+    return most * (length(end - carried) + bend) +
+           (most * turn + most_turn_of(world, body, dt)) * world.bodies.info[body].radius;
 }
 
 // The path of one of the body's shapes, relative to `origin`.
@@ -113,8 +135,8 @@ struct Impact {
     }
 };
 
-void meet(const WorldData& world, uint32_t mine, const BodyPath& path, uint32_t other, float dt, Impact& impact) {
-    BodyPath other_path = path_of(world, world.colliders.info[other].body, dt);
+void meet(const WorldData& world, uint32_t mine, const BodyPath& path, uint32_t other, const BodyPath& other_path,
+          Impact& impact) {
     Position origin = path.start.position;
     const Geometry &a = world.colliders.geometry[other], &b = world.colliders.geometry[mine];
     Motion motion_a = motion_of(world, other, other_path, origin), motion_b = motion_of(world, mine, path, origin);
@@ -135,20 +157,62 @@ void bounds_of(const BodyPath& path, float radius, float lower[3], float upper[3
     for (int k = 0; k < 3; ++k) lower[k] = component(low, k), upper[k] = component(high, k);
 }
 
-// The first impact of a body with colliders that wanted(body) lets through.
-template <class Wanted>
-Impact first_impact(const WorldData& world, uint32_t body, const BodyPath& path, float dt, Array<uint32_t>& near,
-                    Wanted&& wanted) {
+bool is_obstacle(const WorldData& world, uint32_t collider) {
+    return world.colliders.info[collider].boxed &&
+           world.bodies.info[world.colliders.info[collider].body].type != BodyType::dynamic;
+}
+
+// Lists what nothing can push, if that is worth while.
+void list_obstacles(WorldData& world) {
+    constexpr size_t few = 48;
+    ContinuousData& c = world.continuous;
+    const int colliders = world.colliders.slots.count();
+    c.obstacles.clear();
+    c.few_obstacles = c.suspects.count() * 8 > colliders;
+    for (int i = 0; c.few_obstacles && i < colliders; ++i) {
+        const uint32_t slot = world.colliders.slots.in_order(i);
+        if (is_obstacle(world, slot)) c.obstacles.push_back(slot);
+        c.few_obstacles = c.obstacles.size() <= few;
+    }
+    std::sort(c.obstacles.begin(), c.obstacles.end());  // order: total
+}
+
+// Colliders near the body's path that it can meet: obstacles, or those of other bodies; rising.
+void find_near(const WorldData& world, const BodyPath& path, float radius, bool obstacles, Array<uint32_t>& near) {
+    const ContinuousData& c = world.continuous;
     float lower[3], upper[3];
-    bounds_of(path, world.bodies.info[body].radius, lower, upper);
+    bounds_of(path, radius, lower, upper);
     near.clear();
+    if (obstacles && c.few_obstacles) {
+        for (uint32_t i : c.obstacles) {
+            const BroadBox& box = box_of(world, i);
+            bool overlap = true;
+            for (int d = 0; d < 3; ++d) overlap &= box.lower[d] <= upper[d] && lower[d] <= box.upper[d];
+            if (overlap) near.push_back(i);
+        }
+        return;
+    }
     world.broad_phase.query_box(lower, upper, near);
+    size_t kept = 0;
+    for (uint32_t i : near)
+        if (world.colliders.info[i].boxed && is_obstacle(world, i) == obstacles) near[kept++] = i;
+    near.resize_unset(kept);
     std::sort(near.begin(), near.end());  // order: total
+}
+
+// The first impact of a body with obstacles, or with other bodies.
+Impact first_impact(const WorldData& world, uint32_t body, const BodyPath& path, float dt, bool obstacles,
+                    Array<uint32_t>& near) {
+    const BodyInfo& info = world.bodies.info[body];
+    find_near(world, path, info.radius, obstacles, near);
     Impact impact;
     for (uint32_t other : near) {
-        if (!world.colliders.info[other].boxed || !wanted(world.colliders.info[other].body)) continue;
-        for (uint32_t c = world.bodies.info[body].first_collider; c != no_slot; c = world.colliders.info[c].next)
-            if (may_meet(world, c, other)) meet(world, c, path, other, dt, impact);
+        const uint32_t carrier = world.colliders.info[other].body;
+        const BodyPath other_path = path_of(world, carrier, dt);
+        const bool carries = obstacles && !is_still(world, carrier);
+        if (carries && !(most_reach_against(world, body, other_path, dt) > info.depth)) continue;
+        for (uint32_t c = info.first_collider; c != no_slot; c = world.colliders.info[c].next)
+            if (may_meet(world, c, other)) meet(world, c, path, other, other_path, impact);
     }
     return impact;
 }
@@ -191,15 +255,17 @@ void stop(WorldData& world, uint32_t body, const BodyPath& path, const Impact& i
     world.continuous.fraction[place_of(world, body)] *= static_cast<float>(impact.fraction);
 }
 
-// Bodies in the way of kinematic ones that moved far.
-void suspect_swept(WorldData& world, uint32_t kinematic, const BodyPath& path, Array<uint32_t>& near) {
+// Bodies in the way of kinematic ones that moved far, and far against them.
+void suspect_swept(WorldData& world, uint32_t kinematic, const BodyPath& path, float dt, Array<uint32_t>& near) {
     float lower[3], upper[3];
     bounds_of(path, world.bodies.info[kinematic].radius, lower, upper);
     near.clear();
     world.broad_phase.query_box(lower, upper, near);
     for (uint32_t c : near) {
         uint32_t body = world.colliders.info[c].body;
-        if (world.bodies.info[body].type == BodyType::dynamic && !is_still(world, body))
+        const BodyInfo& info = world.bodies.info[body];
+        if (info.type == BodyType::dynamic && !is_still(world, body) && !info.contained &&
+            most_reach_against(world, body, path, dt) > info.depth)
             world.continuous.is_suspect[place_of(world, body)] = 1;
     }
 }
@@ -216,7 +282,7 @@ void find_suspects(WorldData& world, float dt) {
         if (info.contained || !(most_reach_of(world, body, dt) > info.depth)) continue;
         BodyPath path = path_of(world, body, dt);
         if (!(reach_of(path, info.radius) > info.depth)) continue;
-        if (info.type == BodyType::kinematic) suspect_swept(world, body, path, c.near[0]);
+        if (info.type == BodyType::kinematic) suspect_swept(world, body, path, dt, c.near[0]);
         else c.is_suspect[place_of(world, body)] = 1;
     }
     for (uint32_t body : world.awake) {
@@ -294,23 +360,20 @@ void stop_at_impacts(WorldData& world, float dt) {
     if (!world.config.continuous) return;
     find_suspects(world, dt);
     ContinuousData& c = world.continuous;
+    list_obstacles(world);
     // Against what nothing can push: each body for itself.
     world.tasks.for_each(c.suspects.count(), suspects_per_task, [&](int begin, int end, int worker) {
         for (int i = begin; i < end; ++i) {
             uint32_t body = c.suspects[static_cast<size_t>(i)];
             BodyPath path = path_of(world, body, dt);
-            Impact impact =
-                first_impact(world, body, path, dt, c.near[static_cast<size_t>(worker)],
-                             [&](uint32_t other) { return world.bodies.info[other].type != BodyType::dynamic; });
+            Impact impact = first_impact(world, body, path, dt, true, c.near[static_cast<size_t>(worker)]);
             if (impact.fraction <= 1.0) stop(world, body, path, impact, dt);
         }
     });
     // Bullets against other bodies as these now move, one after the other.
     for (uint32_t body : c.bullets) {
         BodyPath path = path_of(world, body, dt);
-        Impact impact = first_impact(world, body, path, dt, c.near[0], [&](uint32_t other) {
-            return world.bodies.info[other].type == BodyType::dynamic;
-        });
+        Impact impact = first_impact(world, body, path, dt, false, c.near[0]);
         if (impact.fraction <= 1.0) stop(world, body, path, impact, dt);
     }
     limit_energies(world, dt);

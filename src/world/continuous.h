@@ -17,9 +17,11 @@ struct ContinuousData {
     Array<uint8_t> is_suspect;
     Array<float> fraction;              // after which a body was stopped, 1 where it was not
     std::vector<Array<uint32_t>> near;  // by worker: colliders near a suspect
+    Array<uint32_t> obstacles;          // colliders that nothing can push, rising, where they are few ...
+    bool few_obstacles = false;         // ... and suspects many: it is faster to go through them all
 
     ContinuousData(const Memory* memory, int workers)
-        : suspects(memory), bullets(memory), start(memory), is_suspect(memory), fraction(memory) {
+        : suspects(memory), bullets(memory), start(memory), is_suspect(memory), fraction(memory), obstacles(memory) {
         for (int i = 0; i < workers; ++i) near.emplace_back(memory);
     }
 };

@@ -37,6 +37,11 @@ bool wanted(const WorldData& world, const BoxPair& p) {
     return !world.joints.keeps_apart(a.body, b.body);
 }
 
+const BroadBox& box_of(const WorldData& world, uint32_t collider) {
+    bool fixed = world.bodies.info[world.colliders.info[collider].body].type == BodyType::fixed;
+    return (fixed ? world.fixed_boxes : world.moving_boxes)[world.box_place[collider]];
+}
+
 uint32_t begin_pair(WorldData& world, const BoxPair& colliders) {
     const ColliderStore& c = world.colliders;
     const uint32_t number = world.pairs.begin(colliders.a, colliders.b, c.slots.capacity());
@@ -82,11 +87,6 @@ void compare_all(WorldData& world) {
     }
     while (at < table.listed.size()) end_pair(world, table.listed[at++].pair);
     world.box_pairs.resize_unset(fresh);
-}
-
-const BroadBox& box_of(const WorldData& world, uint32_t collider) {
-    bool fixed = world.bodies.info[world.colliders.info[collider].body].type == BodyType::fixed;
-    return (fixed ? world.fixed_boxes : world.moving_boxes)[world.box_place[collider]];
 }
 
 // A joint between two bodies came or went: their pairs may begin or end though no box has changed.

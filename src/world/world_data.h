@@ -199,6 +199,8 @@ void settle_movers(WorldData& world);
 void limit_motion(WorldData& world);
 void update_bounds(WorldData& world, float dt);
 void find_box_pairs(WorldData& world);
+// The collider's box as the broad phase has it.
+const BroadBox& box_of(const WorldData& world, uint32_t collider);
 void match_pairs(WorldData& world);
 void find_contacts(WorldData& world, float dt);
 void silence_seams(WorldData& world);
