@@ -7,7 +7,7 @@ namespace lendulet {
 namespace {
 
 constexpr int bodies_per_task = 256;    // bodies in a chunk of a parallel loop; a multiple of 16
-constexpr int contacts_per_task = 128;  // manifolds in a chunk, whatever the width
+constexpr int contacts_per_task = 256;  // manifolds in a chunk, whatever the width
 
 // Calls run(begin, end) on parts of a range of bodies, in whole blocks.
 template <class Run>
