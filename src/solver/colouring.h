@@ -46,9 +46,9 @@ public:
         keys_.reserve(keys_.size() + other.keys_.size());
         counts_.reserve(other.counts_.size());
     }
-    // Calls group(tile, colour, class, begin, count) for every group that is not empty, by tile, then colour, then class:
-    // its constraints are to be found in [begin, begin + count) of what fill() writes. Tile `count` is what lies between
-    // tiles, and all where there is but one.
+    // Calls group(tile, colour, class, begin, count) for every group that is not empty, by tile, then colour, then
+    // class: its constraints are to be found in [begin, begin + count) of what fill() writes. Tile `count` is what lies
+    // between tiles, and all where there is but one.
     template <class Group>
     void for_each_group(Group&& group) const {
         const int per_tile = colours * classes_;
@@ -83,16 +83,11 @@ struct ColourSchedule {
     int overflow = 0;  // manifolds that share bodies: one lane, one thread
 
     explicit ColourSchedule(const Memory* memory)
-        : order(memory),
-          groups(memory),
-          tile_ends(memory),
-          colour_ends(memory),
-          rows(memory),
-          sorter_(memory) {}
+        : order(memory), groups(memory), tile_ends(memory), colour_ends(memory), rows(memory), sorter_(memory) {}
 
-    // Colours the `count` records that `list` names, all of bodies in these tiles, and takes the tiles for one where too
-    // many lie between them. Where only one body of a record is moved, it is B. `extras`, by record, may be null where
-    // no contact resists rolling.
+    // Colours the `count` records that `list` names, all of bodies in these tiles, and takes the tiles for one where
+    // too many lie between them. Where only one body of a record is moved, it is B. `extras`, by record, may be null
+    // where no contact resists rolling.
     void build(const ContactRecord* records, ContactExtra* extras, const uint32_t* list, int count,
                const SolverBodies& bodies, Tiles cut, const SolverKernels& kernels,
                const SolverKernels& scalar_kernels);

@@ -136,7 +136,8 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
         // Impacts look at all bodies at once, and so do joints and the first warm start.
         bool relaxed = k.first;
         if (!bouncing_.empty()) {
-            if (!relaxed) for_each_tile(tasks, range, [&](int tile, BodyRange) { pass_tile(tile, bodies, before, relax); });
+            if (!relaxed)
+                for_each_tile(tasks, range, [&](int tile, BodyRange) { pass_tile(tile, bodies, before, relax); });
             relaxed = true;
             k.moved = resolve_impacts(bodies, records, {bouncing_.data(), bouncing_.count(), extras_}, k);
         }

@@ -1,6 +1,6 @@
-// How a range of packed bodies is cut into tiles that fit into the second-level cache with their constraints (about 1.6 kB
-// a body with three contacts). One thread takes a tile through all passes that need nothing from other tiles, so that
-// rows are fetched from farther away once a substep and not once a pass.
+// How a range of packed bodies is cut into tiles that fit into the second-level cache with their constraints (about 1.6
+// kB a body with three contacts). One thread takes a tile through all passes that need nothing from other tiles, so
+// that rows are fetched from farther away once a substep and not once a pass.
 //
 // Where tiles end depends on the bodies alone, never on the number of workers: results must not show it.
 #pragma once
@@ -42,7 +42,8 @@ struct Tiles {
     int32_t filler(int tile) const { return bodies(tile).end - 1; }
 };
 
-// Places for bodies, one after the other from `begin` on, a multiple of block_bodies. Leaves out those that are fillers.
+// Places for bodies, one after the other from `begin` on, a multiple of block_bodies. Leaves out those that are
+// fillers.
 class TilePlaces {
 public:
     TilePlaces(int begin, int bodies) : begin_(begin), next_(begin) {

@@ -85,10 +85,11 @@ float most_reach_of(const WorldData& world, uint32_t body, float dt) {
     return most * length(Vec3{dp[0], dp[1], dp[2]}) + most_turn_of(world, body, dt) * info.radius;
 }
 
-// How far any point of `body` moved at most as another one, which went along `path`, saw it: a body that goes along with
-// a great drum hardly moves against its wall, however fast both are.
+// How far any point of `body` moved at most as another one, which went along `path`, saw it: a body that goes along
+// with a great drum hardly moves against its wall, however fast both are.
 float most_reach_against(const WorldData& world, uint32_t body, const BodyPath& path, float dt) {
-    const Position start = world.continuous.start[place_of(world, body)].position, end = world.bodies.pose[body].position;
+    const Position start = world.continuous.start[place_of(world, body)].position,
+                   end = world.bodies.pose[body].position;
     const float turn = absolute(path.angle);
     if (turn > 1.0f) return 3e38f;
     const Vec3 arm = rotate(rotation_about(path.axis, path.angle), start - path.start.position);
