@@ -68,6 +68,10 @@ Result<Scene> instantiate(const SceneDescription& description, const Configure& 
     if (!built) return built.error();
     Scene scene{std::move(built).value(), description.name, description.dt, description.steps, {}, {}};
 
+    scene.world
+        .reserve({.bodies = static_cast<int>(description.bodies.size()),
+                  .joints = static_cast<int>(description.joints.size())})
+        .value();
     std::vector<BodyId> ids;
     ids.reserve(description.bodies.size());
     for (const SceneBody& body : description.bodies) {

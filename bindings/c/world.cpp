@@ -82,6 +82,11 @@ double lendulet_time(const lendulet_world* world) { return world ? world->scene.
 uint64_t lendulet_step_count(const lendulet_world* world) { return world ? world->scene.world.step_count() : 0; }
 uint64_t lendulet_hash(const lendulet_world* world) { return world ? world->scene.world.hash() : 0; }
 
+lendulet_result lendulet_reserve(lendulet_world* world, int32_t bodies, int32_t contacts, int32_t joints) {
+    if (!world) return refuse_null("reserve");
+    return result_of(world->scene.world.reserve({bodies, contacts, joints}));
+}
+
 lendulet_result lendulet_set_gravity(lendulet_world* world, const float gravity[3]) {
     if (!world || !gravity) return refuse_null("set_gravity");
     return result_of(world->scene.world.set_gravity(vector(gravity)));

@@ -62,6 +62,8 @@ uint64_t lendulet_hash(const lendulet_world* world);
 /* A second world in the same state, which goes its own way: see World::fork(). The same numbers name the same bodies
  * there. Null on an error. */
 lendulet_world* lendulet_fork(const lendulet_world* world);
+/* Takes memory ahead for so many bodies, contacts (0: three for every body) and joints: see World::reserve(). */
+lendulet_result lendulet_reserve(lendulet_world* world, int32_t bodies, int32_t contacts, int32_t joints);
 /* m/s^2 */
 lendulet_result lendulet_set_gravity(lendulet_world* world, const float gravity[3]);
 lendulet_result lendulet_read_gravity(const lendulet_world* world, float out[3]);

@@ -118,6 +118,13 @@ struct Momentum {
     double angular[3];  // about the world's origin, kg m^2/s
 };
 
+// For World::reserve(). Counts of 0 to 16 777 216; contacts = 0: three for every body.
+struct Capacity {
+    int bodies = 0;    // moving ones, with one collider each
+    int contacts = 0;  // pairs of colliders near each other
+    int joints = 0;
+};
+
 class World {
 public:
     World(World&&) noexcept;
@@ -151,6 +158,12 @@ public:
     JointState joint(JointId id) const;
     // The joint as it was defined, with the motor that it has now.
     JointDef joint_def(JointId id) const;
+
+    // Takes memory ahead for worlds of so many bodies, contacts and joints, and touches it: the first steps then need
+    // not wait for the system to hand it out, which can take several times as long as they. A hint: all of them may
+    // become more, and results are the same without. For use before the first body is added, or any time later.
+    // Errors: bad_config (a count below 0 or above 16 777 216), locked.
+    Status reserve(const Capacity& capacity);
 
     // --- simulation
     // Advances by dt seconds (0 .. 1000; longer steps than 1 s are cut into equal ones of at most 1 s). dt = 0 does

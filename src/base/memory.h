@@ -70,6 +70,14 @@ public:
     void reserve(size_t n) {
         if (n > capacity_) grow(n);
     }
+    // Reserves, and writes to what is not in use: the system hands out memory page by page where it is touched first,
+    // which may take longer than all that is done with it.
+    void make_ready(size_t n) {
+        constexpr size_t page = 4096;
+        reserve(n);
+        volatile auto* bytes = reinterpret_cast<unsigned char*>(data_);
+        for (size_t i = size_ * sizeof(T); i < capacity_ * sizeof(T); i += page) bytes[i] = 0;
+    }
     void resize_unset(size_t n) {
         reserve(n);
         size_ = n;

@@ -16,6 +16,12 @@ void SolverBodies::reset(int moving) {
     for (int i = count; i < padded; ++i) set_at_rest(i);
 }
 
+void SolverBodies::make_ready(size_t entries) {
+    state.make_ready(entries), inertia.make_ready(entries), start.make_ready(entries);
+    motion.make_ready(entries), place.make_ready(entries);
+    blocks.make_ready(entries / block_bodies + 1);
+}
+
 void SolverBodies::set_at_rest(int body) {
     size_t i = static_cast<size_t>(body);
     state[i] = BodyState{};

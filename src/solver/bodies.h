@@ -101,6 +101,8 @@ struct SolverBodies {
         : state(memory), inertia(memory), start(memory), motion(memory), place(memory), blocks(memory) {}
     // Makes room for `moving` bodies and sets the reserved and padding entries.
     void reset(int moving);
+    // Takes memory for so many entries.
+    void make_ready(size_t entries);
     // Makes an entry that is part of no constraint.
     void set_at_rest(int body);
 };

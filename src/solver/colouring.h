@@ -46,6 +46,11 @@ public:
         keys_.reserve(keys_.size() + other.keys_.size());
         counts_.reserve(other.counts_.size());
     }
+    // Takes memory for so many; before begin().
+    void make_ready(size_t bodies, size_t constraints) {
+        used_inside_.make_ready(bodies), used_between_.make_ready(bodies), used_fixed_.make_ready(bodies);
+        keys_.make_ready(constraints);
+    }
     // Calls group(tile, colour, class, begin, count) for every group that is not empty, by tile, then colour, then
     // class: its constraints are to be found in [begin, begin + count) of what fill() writes. Tile `count` is what lies
     // between tiles, and all where there is but one.
@@ -104,6 +109,13 @@ struct ColourSchedule {
         colour_ends.reserve(colour_ends.size() + other.colour_ends.size());
         rows.reserve(rows.size() + other.rows.size());
         sorter_.make_room(other.sorter_);
+    }
+
+    // Takes memory for so many; before build(). `row_bytes`: of one contact.
+    void make_ready(size_t bodies, size_t contacts, size_t row_bytes) {
+        order.make_ready(contacts);
+        rows.make_ready((contacts + contacts / 8) * row_bytes);  // with empty lanes
+        sorter_.make_ready(bodies, contacts);
     }
 
 private:

@@ -52,6 +52,11 @@ public:
         schedule_.make_room(other.schedule_);
         bouncing_.reserve(bouncing_.size() + other.bouncing_.size());
     }
+    // Takes memory for so many entries of bodies, contacts of four points, and joints; before prepare().
+    void make_ready(size_t bodies, size_t contacts, size_t joints) {
+        schedule_.make_ready(bodies, contacts, kernels_.row_bytes[2] / static_cast<size_t>(kernels_.width));
+        joints_.make_ready(bodies, joints);
+    }
     // Colours the joints and packs them; after prepare() and with the same contacts, in every step. `joints` must stay
     // until store_joints(), and until the next call where that one reuses them.
     void prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joints, ContactList contacts,

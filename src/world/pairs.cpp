@@ -68,6 +68,14 @@ void PairTable::make_room(size_t more) {
     links_.reserve(2 * needed);
 }
 
+void PairTable::make_ready(size_t n) {
+    pairs.make_ready(n), caches.make_ready(n), poses.make_ready(n);
+    links_.make_ready(2 * n);
+    for (Array<uint32_t>* numbers : {&free_, &ended_, &free_single_}) numbers->make_ready(n);
+    for (Array<ListedPair>* list : {&listed, &coming_, &merged_}) list->make_ready(n);
+    scratch_.make_ready(n);
+}
+
 uint32_t PairTable::begin(uint32_t a, uint32_t b, size_t colliders) {
     if (free_.empty()) {
         free_.push_back(static_cast<uint32_t>(pairs.size()));

@@ -77,6 +77,8 @@ public:
 
     // So that `more` pairs may begin at the cost of one enlargement.
     void make_room(size_t more);
+    // For so many pairs, each with one manifold.
+    void make_ready(size_t pairs);
     // A new pair of colliders a < b, which is listed; its number. Colliders from `colliders` on are unknown.
     uint32_t begin(uint32_t a, uint32_t b, size_t colliders);
     // Gives a pair its stretch of records, for one manifold or for those of a mesh.

@@ -328,6 +328,8 @@ const char* test_refusals(void) {
     EXPECT(lendulet_step(NULL) < 0 && lendulet_read_poses(NULL, &poses) < 0 && lendulet_hash(NULL) == 0);
     world = lendulet_create_world(10.0f);
     EXPECT(world != NULL && lendulet_read_poses(world, NULL) < 0 && lendulet_read_poses(world, &poses) == 0);
+    EXPECT(lendulet_reserve(world, -1, 0, 0) < 0 && strstr(lendulet_error(), "bodies") != NULL);
+    EXPECT(lendulet_reserve(world, 10, 0, 1) == 0 && lendulet_reserve(NULL, 1, 1, 1) < 0);
     EXPECT(lendulet_set_gravity(world, wrong) < 0 && strstr(lendulet_error(), "finite") != NULL);
     EXPECT(lendulet_add_sphere(world, 0.5f, wrong, at_rest, 1.0f, NULL) < 0);
     EXPECT(lendulet_add_sphere(world, -1.0f, at_rest, at_rest, 1.0f, NULL) < 0);

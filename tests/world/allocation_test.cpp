@@ -113,6 +113,56 @@ TEST(AllocationAfterWarmUp, RemovedBodiesMakeRoomForNewOnes) {
     EXPECT_EQ(counter.allocations.load(), hooked);
 }
 
+// The walls of bricks that two runs build, one of them with room taken ahead.
+World bricks(Counter& counter, bool ahead) {
+    World world = WorldBuilder{}.sleep(false).allocator(counter.hook()).build().value();
+    if (ahead) world.reserve({.bodies = 400, .contacts = 2400}).value();
+    add_floor(world);
+    for (int i = 0; i < 400; ++i)
+        world
+            .add_rigid_body(
+                {.shape = Box{{0.5f, 0.25f, 0.25f}},
+                 .position = {1.02f * static_cast<float>(i % 20), 0.25f + 0.5f * static_cast<float>(i / 20), 0.0f}})
+            .value();
+    return world;
+}
+
+TEST(Reserve, FirstStepsTakeLittleMemory) {
+    Counter plain, ahead;
+    World without = bricks(plain, false), with = bricks(ahead, true);
+    const long before = plain.live_bytes.load(), reserved = ahead.live_bytes.load();
+    run(without, 3);
+    run(with, 3);
+    EXPECT_EQ(with.hash(), without.hash());
+    const long taken = ahead.live_bytes.load() - reserved;  // for scratch, and the islands that take more substeps
+    EXPECT_LT(taken, (plain.live_bytes.load() - before) / 3);
+}
+
+TEST(Reserve, ABusyWorldLosesNothing) {
+    Counter counter;
+    World world = bricks(counter, false), same = bricks(counter, false);
+    run(world, 5);
+    run(same, 5);
+    world.reserve({.bodies = 1000, .contacts = 5000, .joints = 10}).value();
+    EXPECT_EQ(world.hash(), same.hash());
+    run(world, 5);
+    run(same, 5);
+    EXPECT_EQ(world.hash(), same.hash());
+    EXPECT_EQ(world.check(), "");
+}
+
+TEST(Reserve, RefusesCountsThatCannotBe) {
+    World world = WorldBuilder{}.build().value();
+    for (const Capacity& wrong : {Capacity{.bodies = -1}, Capacity{.contacts = -5}, Capacity{.joints = 1 << 25},
+                                  Capacity{.bodies = 2147483647}}) {
+        const Status refused = world.reserve(wrong);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, ErrorCode::bad_config);
+        EXPECT_NE(refused.error().message.find("reserve"), std::string::npos);
+    }
+    EXPECT_TRUE(world.reserve({}));
+}
+
 TEST(AllocatorHooks, NeedBothFunctions) {
     Counter counter;
     AllocatorHook half = counter.hook();

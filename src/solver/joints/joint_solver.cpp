@@ -28,7 +28,7 @@ void JointSolver::for_each_group(TaskPool& tasks, Run&& run) const {
         }
         int blocks = static_cast<int>(block_count(static_cast<uint32_t>(g.count), table_.width));
         tasks.share(blocks, joints_per_task / table_.width,
-                       [&](int begin, int end, int) { run(table_.of[type], g, begin, end); });
+                    [&](int begin, int end, int) { run(table_.of[type], g, begin, end); });
     }
 }
 

@@ -27,6 +27,10 @@ public:
 
     // Colours the joints and packs them into rows.
     void prepare(TaskPool& tasks, SolverBodies& bodies, JointList joints, ContactList contacts, JointReuse reuse);
+    // Takes memory for so many joints of the largest kind but six-degree ones; before prepare().
+    void make_ready(size_t bodies, size_t joints) {
+        if (joints > 0) schedule_.make_ready(bodies, joints, table_);
+    }
     bool empty() const { return schedule_.groups.empty(); }
     // In the first substep, after the contacts' warm start.
     void warm_start(TaskPool& tasks, SolverBodies& bodies) const;

@@ -153,6 +153,15 @@ void JointSchedule::colour(const JointRecord* records, int count, const SolverBo
     sorter_.fill([&](uint32_t place, uint32_t i) { order[place] = i; });
 }
 
+void JointSchedule::make_ready(size_t bodies, size_t joints, const JointTable& table) {
+    const JointKernels& ball = table.of[static_cast<int>(JointClass::ball)];
+    order.make_ready(joints);
+    rows.make_ready((joints + joints / 8) * (ball.row_bytes + ball.frame_bytes) / static_cast<size_t>(table.width));
+    sorter_.make_ready(bodies, joints);
+    joint_count_.make_ready(bodies), jointed_.make_ready(bodies), parent_.make_ready(bodies);
+    touched_.make_ready(bodies), touched_before_.make_ready(bodies);
+}
+
 bool JointSchedule::build(JointRecord* records, int count, bool same, ContactList contacts, SolverBodies& bodies,
                           const JointTable& table, const JointTable& scalar_table) {
     if (count == 0) {

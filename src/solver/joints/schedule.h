@@ -42,6 +42,9 @@ struct JointSchedule {
     bool build(JointRecord* records, int count, bool same, ContactList contacts, SolverBodies& bodies,
                const JointTable& table, const JointTable& scalar_table);
 
+    // Takes memory for so many ball joints.
+    void make_ready(size_t bodies, size_t joints, const JointTable& table);
+
 private:
     void find_groups_of_bodies(const JointRecord* records, int count, const SolverBodies& bodies);
     void find_touching(ContactList contacts, const SolverBodies& bodies);

@@ -1,1 +1,0 @@
-// The unit of the precompiled headers of tests, which has nothing of its own.
