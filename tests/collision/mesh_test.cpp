@@ -237,6 +237,49 @@ TEST(Mesh, SeparatedDistanceAgreesWithBruteForce) {
     EXPECT_GT(compared, 200);
 }
 
+// A contact of an edge or a corner is the nearest place to the shape for some way around: else its triangle's neighbour
+// is nearer, and a normal that leans over that would push sideways.
+TEST(Mesh, EdgesAndCornersAreTheNearestPlacesAround) {
+    for (float rise : {0.3f, 0.04f}) {
+        auto height = [&](float x, float z) { return rise * sin_cos(2.1f * x).sin * sin_cos(1.7f * z + 0.5f).cos; };
+        TriangleMesh ground = grid(12, 0.4f, height);
+        const MeshData& data = ground.data();
+        Solid mesh(ground);
+        Random random(13);
+        int edges = 0;
+        for (const Kind& kind : every_kind()) {
+            Solid shape(kind.shape);
+            for (int i = 0; i < 60; ++i) {
+                Quat turn = random.rotation();
+                CentredBox box = bounds(shape.geometry, turn);
+                Vec3 at{random.in(-1.5f, 1.5f), 0.0f, random.in(-1.5f, 1.5f)};
+                at.y = height(at.x, at.z) + box.half.y - box.centre.y + random.in(0.0f, 0.1f);
+                for (const Manifold& m : on(mesh, shape, at, turn, 0.1f)) {
+                    const ManifoldPoint& p = m.points[0];
+                    if (m.key >> 31 == 0 || m.follow == 0.0f || p.separation < 1e-3f) continue;
+                    const Vec3 foot = p.position - 0.5f * p.separation * m.normal;
+                    for (const MeshTriangle& t : data.triangles) {
+                        const Vec3 a = data.vertices[t.vertex[0]],
+                                   n = data.normals[static_cast<size_t>(&t - &data.triangles[0])];
+                        bool has_foot = absolute(dot(n, foot - a)) < 1e-4f;
+                        for (int k = 0; k < 3; ++k) {
+                            Vec3 from = data.vertices[t.vertex[k]], to = data.vertices[t.vertex[(k + 1) % 3]];
+                            has_foot &= dot(normalize(cross(n, to - from)), foot - from) > -1e-4f;
+                        }
+                        if (!has_foot) continue;
+                        ++edges;
+                        for (uint32_t v : t.vertex) {
+                            Vec3 way = data.vertices[v] - foot;
+                            EXPECT_LT(dot(m.normal, way), 0.02f * length(way) + 1e-4f) << kind.name << " " << i;
+                        }
+                    }
+                }
+            }
+        }
+        EXPECT_GT(edges, rise > 0.1f ? 100 : 10);
+    }
+}
+
 TEST(Mesh, AtMostTheDeepestManifoldsAreKept) {
     // Many facets within a ball's margin.
     Solid mesh(grid(20, 0.1f, [](float x, float z) { return 3.0f * (x * x + z * z); })), ball(Sphere{0.9f});
