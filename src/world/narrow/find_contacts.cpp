@@ -206,6 +206,7 @@ private:
             r.pair = index;
         }
         finish(p, index, count, margin, cache.clearance);
+        mark_covered(world_, p);
     }
 
     // The pair's record number `i`, with its lasting parts filled in.
