@@ -129,26 +129,29 @@ void silence_pair(WorldData& world, uint32_t number) {
             }
         }
     });
+    if (covered == 0 && !p.covered) return;
     for (uint32_t i = 0; i < p.count; ++i) {
         ContactRecord& r = world.records[p.first_record + i];
-        if ((covered >> i & 1) != 0 || (p.capacity > 1 && (r.flags & contact_covered) != 0)) silence(r);
+        if ((covered >> i & 1) != 0 || (p.covered && (r.flags & contact_covered) != 0)) silence(r);
     }
 }
 
 }  // namespace
 
-void mark_covered(WorldData& world, const ColliderPair& p) {
+void mark_covered(WorldData& world, ColliderPair& p) {
     alignas(Floor) std::byte room[max_mesh_manifolds * sizeof(Floor)];
     auto* floors = reinterpret_cast<Floor*>(room);
     const bool several = has_floor(p) && p.count > 1;
     for (uint32_t i = 0; several && i < p.count; ++i) new (floors + i) Floor(world, touch_of(world, p, i));
     const ColliderInfo& moved = world.colliders.info[moved_collider(p)];
+    p.covered = false;
     for (uint32_t i = 0; i < p.count; ++i) {
         bool covered = false;
         for (uint32_t k = 0; several && k < p.count && !covered; ++k)
             covered = k != i && is_covered(world, floors[i], floors[k], moved);
         uint32_t& flags = world.records[p.first_record + i].flags;
         flags = covered ? flags | contact_covered : flags & ~contact_covered;
+        p.covered |= covered;
     }
 }
 

@@ -204,7 +204,7 @@ void find_contacts(WorldData& world, float dt);
 void silence_seams(WorldData& world);
 // Tells by their flags which manifolds of a pair with a mesh the others silence, as long as they are kept.
 inline constexpr uint32_t contact_covered = 4;  // beside the flags that the solver reads
-void mark_covered(WorldData& world, const ColliderPair& p);
+void mark_covered(WorldData& world, ColliderPair& p);
 void update_islands(WorldData& world, float dt);
 void find_joint_groups(WorldData& world);
 void choose_substeps(WorldData& world, float dt);

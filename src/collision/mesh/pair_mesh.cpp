@@ -6,6 +6,7 @@
 // of the shortest way out; only edges that can touch need GJK and EPA.
 #include <bit>
 
+#include "collision/mesh/candidates.h"
 #include "collision/mesh/filter.h"
 #include "collision/mesh/footing.h"
 #include "collision/mesh/manifolds.h"
@@ -28,6 +29,7 @@ struct MeshCollision : MeshQuery {
     using MeshQuery::MeshQuery;
     Vec3 facing{};  // the plane's normal
     Face face;
+    int32_t face_number = -1;  // of a box or hull
     Vec3 lowest;
 
     Footing footing;
@@ -38,25 +40,46 @@ struct MeshCollision : MeshQuery {
     uint8_t beyond[most_beside];  // their edges
 };
 
+// By how much the box within which triangles are kept is wider than needed: of the shape's size and of the margin,
+// which tells how far it may move in a step.
+constexpr float leeway_of_size = 0.08f, leeway_of_margin = 2.0f, most_leeway = 0.5f;
+// Wider than rounding, where none are kept: whether a triangle is near is the filter's to say.
+constexpr float least_leeway = 0.01f;
+
 // visit(triangle index, apart) for those that may come within `limit` of the core, in the order of the mesh.
 template <class Visit>
-void for_each_near(const MeshQuery& q, float limit, Visit&& visit) {
+void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&& visit) {
     const MeshFilter filter(q.surface, q.shape, q.turn, q.position, q.lower, q.upper, q.centre, limit, level * q.size);
-    uint32_t waiting[MeshFilter::lanes];
-    int count = 0;
-    auto flush = [&] {
-        MeshFilter::Result result = filter.test(waiting, count);
-        for (; result.live != 0; result.live &= result.live - 1) {
-            int i = std::countr_zero(result.live);
-            visit(waiting[i], (result.apart >> i & 1) != 0);
+    auto look_through = [&](const uint32_t* triangles, int count) {
+        for (int i = 0; i < count; ++i) q.surface.ask_for(triangles[i]);
+        for (int i = 0; i < count; ++i) q.surface.ask_for_corners(triangles[i]);
+        for (int first = 0; first < count; first += MeshFilter::lanes) {
+            const int left = count - first;
+            MeshFilter::Result result =
+                filter.test(triangles + first, left < MeshFilter::lanes ? left : MeshFilter::lanes);
+            for (; result.live != 0; result.live &= result.live - 1) {
+                int i = std::countr_zero(result.live);
+                visit(triangles[first + i], (result.apart >> i & 1) != 0);
+            }
         }
-        count = 0;
     };
-    for_each_triangle(q.surface, q.position + q.lower, q.position + q.upper, [&](uint32_t index) {
+    const Vec3 lower = q.position + q.lower, upper = q.position + q.upper;
+    if (kept != nullptr && !kept->hold(lower, upper)) {
+        float leeway = leeway_of_size * q.size + leeway_of_margin * q.pair.margin;
+        kept->find(q.surface, lower, upper, minimum(leeway, most_leeway * q.size));
+    }
+    uint32_t waiting[MeshCandidates::capacity];
+    if (kept != nullptr && kept->are_listed()) return look_through(waiting, kept->near(lower, upper, waiting));
+    int count = 0;
+    const float leeway = least_leeway * q.size;
+    const Vec3 wider{leeway, leeway, leeway};
+    for_each_triangle(q.surface, lower - wider, upper + wider, [&](uint32_t index) {
         waiting[count++] = index;
-        if (count == MeshFilter::lanes) flush();
+        if (count < MeshCandidates::capacity) return;
+        look_through(waiting, count);
+        count = 0;
     });
-    if (count > 0) flush();
+    look_through(waiting, count);
 }
 
 void start(const MeshQuery& q, const Triangle& t, Vec3 normal, bool face, float radius, float follow,
@@ -124,13 +147,40 @@ void sphere_triangle(const MeshQuery& q, const Triangle& t, TriangleContact& out
 
 // --- faces
 
+// Which face of a box or hull looks along a direction; -1: of other shapes, whose faces turn with the direction.
+int32_t number_of_face(const Geometry& g, Vec3 direction) {
+    if (g.kind == GeometryKind::hull) return static_cast<int32_t>(support_face(*g.hull, direction));
+    if (g.kind != GeometryKind::box) return -1;
+    Vec3 size = absolute(direction);
+    int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    return 2 * axis + (component(direction, axis) >= 0.0f ? 1 : 0);
+}
+
 void look_at(MeshCollision& q, Vec3 normal) {
     if (q.facing == normal) return;
     q.facing = normal;
     Vec3 down = rotate_inverse(q.turn, -normal);
+    q.lowest = rotate(q.turn, support_core(q.shape, down));
+    const int32_t number = number_of_face(q.shape, down);
+    if (number >= 0 && number == q.face_number) return;
+    q.face_number = number;
     q.face = best_face(q.shape, down);
     transform_face({{}, q.turn}, q.face);
-    q.lowest = rotate(q.turn, support_core(q.shape, down));
+}
+
+// Whether all of the shape's face is beyond an edge of the triangle, and its lowest point, too: over the triangle is
+// then nothing of the face.
+bool is_beside(const MeshCollision& q, const Triangle& t, uint8_t beyond) {
+    const float slack = 10.0f * level * q.size;  // more than clipping allows
+    for (int i = 0; i < 3; ++i) {
+        if ((beyond >> i & 1) == 0) continue;
+        const Vec3 out = out_across(t, i);
+        const float edge = dot(out, t.vertices[i]), line = edge + slack * length(out);
+        bool outside = dot(out, q.lowest) > edge;
+        for (int k = 0; k < q.face.count && outside; ++k) outside = dot(out, q.face.vertices[k]) > line;
+        if (outside) return true;
+    }
+    return false;
 }
 
 bool over(const Triangle& t, Vec3 p) {
@@ -296,7 +346,7 @@ void convex_triangle(MeshCollision& q, const Triangle& t, bool apart, TriangleCo
     const uint8_t beyond = beyond_edges(q, t, q.lowest);
     q.footing.note(q, t, beyond);
     ClippedFace clipped;
-    clip_to_triangle(q, t, clipped);
+    if (!is_beside(q, t, beyond)) clip_to_triangle(q, t, clipped);
     // A face within a flat or hollow part can touch with its own normal only, and so can the part of one within a
     // gently rolling surface that the shape is over. Overlapping from behind, the way out may be across an edge.
     const bool gentle = (t.touching & t.sharp) == 0, over_face = clipped.count > 0;
@@ -325,11 +375,12 @@ void beside_triangle(const MeshCollision& q, int i, TriangleContact& out) {
 
 }  // namespace
 
-int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings, Manifold* out, int capacity) {
+int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings, MeshCandidates* kept, Manifold* out,
+                        int capacity) {
     MeshCollision q(pair, settings);
     MeshManifolds manifolds(10.0f * level * q.size);
     const bool ball = pair.b->kind == GeometryKind::point, one_sided = q.surface.one_sided();
-    for_each_near(q, pair.margin + q.shape.rounding, [&](uint32_t index, bool apart) {
+    for_each_near(q, pair.margin + q.shape.rounding, kept, [&](uint32_t index, bool apart) {
         Triangle t = make_triangle(q.surface, index, q.position, q.centre);
         if (t.from_behind && one_sided) return;
         TriangleContact contact;
@@ -356,7 +407,7 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
 bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& settings) {
     const MeshQuery q(pair, settings);
     bool touching = false;
-    for_each_near(q, q.shape.rounding, [&](uint32_t index, bool apart) {
+    for_each_near(q, q.shape.rounding, nullptr, [&](uint32_t index, bool apart) {
         if (touching || apart) return;
         Triangle t = make_triangle(q.surface, index, q.position, q.centre);
         float radius = q.shape.rounding;
