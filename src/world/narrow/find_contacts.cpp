@@ -112,17 +112,22 @@ private:
         prefetch<3>(&world_.records[world_.pairs.pairs[numbers[i + prefetch_distance]].first_record]);
     }
 
-    // And for the triangles near it, where they will be collided.
-    void ask_for_triangles(int i) const {
+    // And for what a tested pair is collided by, where it will be and not in a batch.
+    void ask_for_input(int i) const {
         if (i >= scratch_.motion.count || scratch_.motion.kept[i] > 0.0f) return;
-        const ColliderPair& p = world_.pairs.pairs[scratch_.tested[i]];
+        const uint32_t number = scratch_.tested[i];
+        const ColliderPair& p = world_.pairs.pairs[number];
+        if (p.kind == PairKind::boxes) return;
+        prefetch(&world_.colliders.geometry[p.a]);
+        prefetch(&world_.colliders.geometry[p.b]);
         if (p.capacity > 1) prefetch<sizeof(MeshCandidates) / 64>(&world_.pairs.near_triangles[p.surface]);
+        else prefetch<2>(&world_.pairs.caches[number]);
     }
 
     void sort(int i) {
         const MotionBatch& motion = scratch_.motion;
         ask_for_records(scratch_.tested, i, motion.count);
-        ask_for_triangles(i + prefetch_distance);
+        ask_for_input(i + prefetch_distance);
         uint32_t index = scratch_.tested[i];
         ColliderPair& p = world_.pairs.pairs[index];
         if (motion.kept[i] > 0.0f) {
