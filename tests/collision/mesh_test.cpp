@@ -2,6 +2,7 @@
 // nowhere else, both sides are solid, names last.
 #include "meshes.h"
 
+#include "collision/mesh/candidates.h"
 #include "family.h"
 #include "geometry/mesh.h"
 
@@ -277,6 +278,53 @@ TEST(Mesh, EdgesAndCornersAreTheNearestPlacesAround) {
             }
         }
         EXPECT_GT(edges, rise > 0.1f ? 100 : 10);
+    }
+}
+
+// Triangles kept while a shape moves away from where they were found change nothing, to the bit; nor do too many to
+// keep.
+TEST(Mesh, KeptTrianglesChangeNothing) {
+    for (float step : {0.4f, 0.05f}) {
+        auto height = [](float x, float z) { return 0.2f * sin_cos(2.1f * x).sin * sin_cos(1.7f * z + 0.5f).cos; };
+        Solid mesh(grid(step > 0.1f ? 16 : 96, step, height));
+        for (const Kind& kind : every_kind()) {
+            Solid shape(kind.shape);
+            MeshCandidates near;
+            const CentredBox box = bounds(shape.geometry, {});
+            int searches = 0, touching = 0;
+            for (int i = 0; i < 80; ++i) {
+                float s = 0.012f * static_cast<float>(i) - 0.5f;
+                Vec3 at{s, 0.0f, 0.7f * s};
+                at.y = height(at.x, at.z) + box.half.y - box.centre.y + 0.01f;
+                Quat turn = rotation_about(normalize(Vec3{1.0f, 0.2f, 0.5f}), 0.4f * s);
+                CollidePair pair = pair_of({mesh, {}}, {shape, turn}, at, 0.03f);
+                PairCache cache;
+                std::vector<Manifold> kept(max_mesh_manifolds), fresh = manifolds(pair);
+                const Vec3 before = near.lower;
+                const bool found = near.count >= 0;
+                kept.resize(static_cast<size_t>(collide(pair, cache, {}, kept.data(), max_mesh_manifolds, &near)));
+                searches += !found || !(near.lower == before);
+                touching += !kept.empty();
+                ASSERT_EQ(kept.size(), fresh.size()) << kind.name << " " << i;
+                for (size_t k = 0; k < kept.size(); ++k) {
+                    const Manifold &a = kept[k], &b = fresh[k];
+                    ASSERT_EQ(a.count, b.count);
+                    EXPECT_EQ(a.normal, b.normal);
+                    EXPECT_EQ(a.key, b.key);
+                    for (int j = 0; j < a.count; ++j) {
+                        EXPECT_EQ(a.points[j].position, b.points[j].position);
+                        EXPECT_EQ(a.points[j].separation, b.points[j].separation);
+                        EXPECT_EQ(a.points[j].id, b.points[j].id);
+                    }
+                }
+            }
+            EXPECT_GT(touching, 40) << kind.name;
+            EXPECT_LT(searches, 40) << kind.name;
+            EXPECT_GE(near.count, 1) << kind.name;
+            if (near.are_listed()) {
+                EXPECT_GT(searches, 1) << kind.name;
+            }
+        }
     }
 }
 
