@@ -17,9 +17,9 @@ bool wants_swap(const CollidePair& p) {
 }
 
 int collide_in_order(const CollidePair& p, PairCache& cache, const CollideSettings& settings, Manifold* out,
-                     int capacity) {
+                     int capacity, MeshCandidates* near) {
     const Geometry &a = *p.a, &b = *p.b;
-    if (has_triangles(a)) return collide_mesh_convex(p, settings, out, capacity);
+    if (has_triangles(a)) return collide_mesh_convex(p, settings, near, out, capacity);
     if (a.kind == GeometryKind::plane) return collide_plane_convex(p, *out);
     if (is_sharp_box(a) && is_sharp_box(b)) return collide_box_box(p, cache, settings, *out);
     if (is_ball(b)) {
@@ -44,11 +44,12 @@ bool has_closed_form(const Geometry& a, const Geometry& b) {
     return with(a, b) || with(b, a);
 }
 
-int collide(const CollidePair& pair, PairCache& cache, const CollideSettings& settings, Manifold* out, int capacity) {
+int collide(const CollidePair& pair, PairCache& cache, const CollideSettings& settings, Manifold* out, int capacity,
+            MeshCandidates* near) {
     cache.clearance = pair.margin;
     if (capacity <= 0 || (!is_convex(*pair.a) && !is_convex(*pair.b))) return 0;
-    if (!wants_swap(pair)) return collide_in_order(pair, cache, settings, out, capacity);
-    int count = collide_in_order(swapped(pair), cache, settings, out, capacity);
+    if (!wants_swap(pair)) return collide_in_order(pair, cache, settings, out, capacity, near);
+    int count = collide_in_order(swapped(pair), cache, settings, out, capacity, near);
     for (int i = 0; i < count; ++i) swap_back(pair, out[i]);
     return count;
 }
@@ -59,7 +60,7 @@ bool overlap(const CollidePair& pair, PairCache& cache, const CollideSettings& s
     touching.margin = 0.0f;
     if (has_triangles(*touching.a)) return overlap_mesh_convex(touching, settings);
     Manifold manifold;
-    return collide_in_order(touching, cache, settings, &manifold, 1) > 0;
+    return collide_in_order(touching, cache, settings, &manifold, 1, nullptr) > 0;
 }
 
 }  // namespace lendulet

@@ -10,6 +10,8 @@
 
 namespace lendulet {
 
+struct MeshCandidates;
+
 struct CollidePair {
     const Geometry* a;
     const Geometry* b;
@@ -36,7 +38,10 @@ struct PairCache {
 // would be more. Pairs of which neither is convex give none. Order of a and b is the caller's: normals point from a to
 // b.
 inline constexpr int max_mesh_manifolds = 16;
-int collide(const CollidePair& pair, PairCache& cache, const CollideSettings& settings, Manifold* out, int capacity);
+// `near`, of pairs with a mesh or height field: where the triangles found are kept, for as long as the pair's
+// geometries are these; results are the same without it.
+int collide(const CollidePair& pair, PairCache& cache, const CollideSettings& settings, Manifold* out, int capacity,
+            MeshCandidates* near = nullptr);
 
 bool is_sharp_box(const Geometry& g);
 // Whether the pair is collided by a closed form: balls and capsules with each other, with boxes and planes.

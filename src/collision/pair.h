@@ -21,7 +21,9 @@ int collide_plane_convex(const CollidePair& pair, Manifold& out);
 // Any two convex shapes by GJK and EPA.
 int collide_convex_convex(const CollidePair& pair, PairCache& cache, const CollideSettings& settings, Manifold& out);
 // A mesh or height field and any convex shape; the only function with room for more than one manifold.
-int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings, Manifold* out, int capacity);
+// `kept` may be null.
+int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings, MeshCandidates* kept, Manifold* out,
+                        int capacity);
 bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& settings);
 
 inline bool is_convex(const Geometry& g) { return g.kind != GeometryKind::plane && !has_triangles(g); }

@@ -27,6 +27,13 @@ public:
         field_->corners(t, p);
         return normal_of_triangle(p[0], p[1], p[2]);
     }
+    // Fetch what is to be read soon, first of the triangle and then, from there, of its corners.
+    void ask_for(uint32_t t) const {
+        if (mesh_) prefetch(&mesh_->triangles[t]), prefetch(&mesh_->normals[t]);
+    }
+    void ask_for_corners(uint32_t t) const {
+        for (int k = 0; mesh_ && k < 3; ++k) prefetch(&mesh_->vertices[mesh_->triangles[t].vertex[k]]);
+    }
     // Its number in the user's list.
     uint32_t original(uint32_t t) const { return mesh_ ? mesh_->triangles[t].original : t; }
     uint32_t index_of(uint32_t original) const { return mesh_ ? mesh_->place[original] : original; }

@@ -114,6 +114,19 @@ void PairTable::place_records(ColliderPair& pair, bool mesh) {
         pair.first_record = free.back();
         free.pop_back();
     }
+    if (mesh) place_surface(pair);
+}
+
+void PairTable::place_surface(ColliderPair& pair) {
+    if (free_surface_.empty()) {
+        pair.surface = static_cast<uint32_t>(near_triangles.size());
+        near_triangles.push_back(MeshCandidates{});
+        free_surface_.reserve(pairs.capacity());
+    } else {
+        pair.surface = free_surface_.back();
+        free_surface_.pop_back();
+        near_triangles[pair.surface].count = -1;
+    }
 }
 
 void PairTable::clear() {
@@ -121,6 +134,7 @@ void PairTable::clear() {
     links_.clear(), first_.clear(), coming_.clear();
     free_.clear(), ended_.clear();
     free_single_.clear(), free_mesh_.clear();
+    near_triangles.clear(), free_surface_.clear();
     record_count_ = 0;
 }
 
@@ -129,7 +143,7 @@ void PairTable::end(uint32_t number) {
     unhang(p.a, 2 * number);
     unhang(p.b, 2 * number + 1);
     if (p.capacity == 1) free_single_.push_back(p.first_record);
-    if (p.capacity > 1) free_mesh_.push_back(p.first_record);
+    if (p.capacity > 1) free_mesh_.push_back(p.first_record), free_surface_.push_back(p.surface);
     (p.listed ? ended_ : free_).push_back(number);
     p.a = no_pair;
     p.count = 0;

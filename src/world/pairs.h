@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "base/prefetch.h"
 #include "broad_phase/box.h"
+#include "collision/mesh/candidates.h"
 #include "collision/narrow_phase.h"
 #include "world/narrow/kernels.h"
 
@@ -33,6 +34,7 @@ struct ColliderPair {
     uint32_t a, b;            // collider slots, a < b; a is no_pair once the pair has ended
     uint32_t body_a, body_b;  // the bodies of the manifolds' A and B
     uint32_t first_record;    // of this pair's own stretch of records; of a trigger: see RestingContacts::hits
+    uint32_t surface;         // with a mesh: of PairTable::near_triangles
     uint8_t capacity, count;  // manifolds: room, and those found
     uint8_t prepared;         // records whose lasting parts are filled in
     PairKind kind;
@@ -40,6 +42,7 @@ struct ColliderPair {
     bool fixed_a;  // that of A is not
     bool hit;      // of a trigger: overlaps
     bool begun;    // not yet collided
+    bool covered;  // some of its manifolds are: see mark_covered()
     bool listed;   // a step looks at it
     float rest_h;  // of a pair that rests: the substep that its impulses belong to, s
 };
@@ -54,6 +57,7 @@ public:
         : pairs(memory),
           caches(memory),
           poses(memory),
+          near_triangles(memory),
           listed(memory),
           links_(memory),
           first_(memory),
@@ -61,6 +65,7 @@ public:
           ended_(memory),
           free_single_(memory),
           free_mesh_(memory),
+          free_surface_(memory),
           coming_(memory),
           merged_(memory),
           scratch_(memory),
@@ -69,7 +74,8 @@ public:
     Array<ColliderPair> pairs;  // by number, as the two that follow
     Array<PairCache> caches;
     Array<KeptPose> poses;
-    Array<ListedPair> listed;  // sorted by (a, b); brought up to date by merge() and sweep()
+    Array<MeshCandidates> near_triangles;  // of pairs with a mesh or height field
+    Array<ListedPair> listed;              // sorted by (a, b); brought up to date by merge() and sweep()
 
     int count() const { return pairs.count() - free_.count() - ended_.count(); }
     // All stretches of records, those given back included.
@@ -123,6 +129,7 @@ private:
     };
     void hang(uint32_t collider, uint32_t link);
     void unhang(uint32_t collider, uint32_t link);
+    void place_surface(ColliderPair& pair);
     void give_back_ended();
 
     uint32_t record_count_ = 0;
@@ -131,6 +138,7 @@ private:
     Array<uint32_t> free_;                     // numbers
     Array<uint32_t> ended_;                    // numbers that may still be on the list
     Array<uint32_t> free_single_, free_mesh_;  // first records of stretches given back
+    Array<uint32_t> free_surface_;             // of near_triangles
     Array<ListedPair> coming_, merged_;
     Array<BoxPair> scratch_;
     Array<uint32_t> counts_;

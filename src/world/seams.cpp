@@ -5,6 +5,8 @@
 // contact E (a convex shape, or a triangle) that does not rise above that plane cannot be met from above it, so what E
 // adds by another normal than F's is nothing but the piece's end: E is silenced for this step. Both must stand still
 // relative to each other: they are of one pair or of static bodies.
+#include <new>
+
 #include "geometry/triangle_surface.h"
 #include "world/world_data.h"
 
@@ -34,19 +36,10 @@ uint32_t fixed_collider(const ColliderPair& p) { return p.flipped ? p.b : p.a; }
 uint32_t moved_collider(const ColliderPair& p) { return p.flipped ? p.a : p.b; }
 bool has_floor(const ColliderPair& p) { return p.kind != PairKind::trigger && p.fixed_a && p.count > 0; }
 
-Vec3 normal_of(const ContactRecord& r) { return {r.normal[0], r.normal[1], r.normal[2]}; }
-
 Touch touch_of(const WorldData& world, const ColliderPair& p, uint32_t i) {
     const uint32_t fixed = fixed_collider(p);
     const float* c = world.frames[fixed].centre;
     return {p.first_record + i, fixed, {c[0], c[1], c[2]}};
-}
-
-// On the surface of the fixed side, where it was when the manifold was made.
-Vec3 surface_point(const WorldData& world, const Touch& t, int j) {
-    const ContactRecord& r = world.records[t.record];
-    const float* x = r.points[j].position;
-    return t.origin + Vec3{x[0], x[1], x[2]} - 0.5f * world.found_separations[t.record].s[j] * normal_of(r);
 }
 
 // How far the piece that a manifold touches rises along a world direction.
@@ -67,28 +60,32 @@ float rise_of(const WorldData& world, const Touch& t, Vec3 direction) {
 struct Floor {
     Touch touch;
     Vec3 normal;
+    int count;
+    Vec3 points[4];                        // on the surface of the fixed side, where it was when the manifold was made
     float height = 1e30f, overlap = 0.0f;  // along the normal; how deep the shape is below it
 
-    Floor(const WorldData& world, const Touch& t) : touch(t), normal(normal_of(world.records[t.record])) {
-        const int count = world.records[t.record].point_count;
+    Floor(const WorldData& world, const Touch& t) : touch(t) {
+        const ContactRecord& r = world.records[t.record];
+        normal = {r.normal[0], r.normal[1], r.normal[2]};
+        count = r.point_count;
         for (int j = 0; j < count; ++j) {
-            height = minimum(height, dot(normal, surface_point(world, t, j)));
-            overlap = maximum(overlap, -world.found_separations[t.record].s[j]);
+            const float *x = r.points[j].position, s = world.found_separations[t.record].s[j];
+            points[j] = t.origin + Vec3{x[0], x[1], x[2]} - 0.5f * s * normal;
+            height = minimum(height, dot(normal, points[j]));
+            overlap = maximum(overlap, -s);
         }
     }
     // Whether it is above the piece of E, whose points are in it.
-    bool covers(const WorldData& world, const Touch& e, float level, float radius) const {
-        const ContactRecord& r = world.records[e.record];
-        const Vec3 other = normal_of(r);
-        if (dot(normal, other) < -level_of_depth) return false;
-        if (length_squared(cross(normal, other)) < same_normal * same_normal) return false;
-        level += rounding * max_component(absolute(e.origin) + absolute(touch.origin));
+    bool covers(const WorldData& world, const Floor& e, float level, float radius) const {
+        if (dot(normal, e.normal) < -level_of_depth) return false;
+        if (length_squared(cross(normal, e.normal)) < same_normal * same_normal) return false;
+        level += rounding * max_component(absolute(e.touch.origin) + absolute(touch.origin));
         const float slack = level + 2.5f * overhang * radius;
-        for (int j = 0; j < r.point_count; ++j) {
-            float above = dot(normal, surface_point(world, e, j)) - height;
+        for (int j = 0; j < e.count; ++j) {
+            float above = dot(normal, e.points[j]) - height;
             if (above > slack || above < -slack - overlap) return false;
         }
-        return rise_of(world, e, normal) - height <= level;
+        return rise_of(world, e.touch, normal) - height <= level;
     }
 };
 
@@ -99,13 +96,22 @@ void silence(ContactRecord& r) {
     r.twist_impulse = 0.0f;
 }
 
+// What rises above a floor by less than this is part of it.
+float level_for(const ColliderInfo& moved) {
+    return minimum(level_of_radius * moved.radius, level_of_depth * moved.depth);
+}
+
+// Whether E is nothing but the end of a piece of the floor F.
+bool is_covered(const WorldData& world, const Floor& e, const Floor& f, const ColliderInfo& moved) {
+    const float level = level_for(moved);
+    return f.covers(world, e, level, moved.radius) && !e.covers(world, f, level, moved.radius);
+}
+
 // Writes this pair's records alone, and reads of others what is not written here.
 void silence_pair(WorldData& world, uint32_t number) {
     const ColliderPair& p = world.pairs.pairs[number];
     if (!has_floor(p)) return;
     const uint32_t moved = moved_collider(p);
-    const ColliderInfo& info = world.colliders.info[moved];
-    const float level = minimum(level_of_radius * info.radius, level_of_depth * info.depth);
     auto stands = [&](const ColliderPair& q) {
         return world.bodies.info[world.colliders.info[fixed_collider(q)].body].type == BodyType::fixed;
     };
@@ -113,23 +119,41 @@ void silence_pair(WorldData& world, uint32_t number) {
     static_assert(max_mesh_manifolds <= 32);
     world.pairs.for_each_of(moved, [&](uint32_t other) {
         const ColliderPair& q = world.pairs.pairs[other];
-        if (!has_floor(q) || moved_collider(q) != moved) return;
-        if (other == number ? p.count < 2 : !(stands(p) && stands(q))) return;
+        if (other == number || !has_floor(q) || moved_collider(q) != moved || !(stands(p) && stands(q))) return;
         for (uint32_t k = 0; k < q.count; ++k) {
             const Floor floor(world, touch_of(world, q, k));
             for (uint32_t i = 0; i < p.count; ++i) {
-                const Touch e = touch_of(world, p, i);
-                if ((covered >> i & 1) != 0 || floor.touch.record == e.record) continue;
-                if (!floor.covers(world, e, level, info.radius)) continue;
-                if (!Floor(world, e).covers(world, floor.touch, level, info.radius)) covered |= 1u << i;
+                if ((covered >> i & 1) != 0) continue;
+                if (is_covered(world, Floor(world, touch_of(world, p, i)), floor, world.colliders.info[moved]))
+                    covered |= 1u << i;
             }
         }
     });
-    for (uint32_t i = 0; i < p.count; ++i)
-        if ((covered >> i & 1) != 0) silence(world.records[p.first_record + i]);
+    if (covered == 0 && !p.covered) return;
+    for (uint32_t i = 0; i < p.count; ++i) {
+        ContactRecord& r = world.records[p.first_record + i];
+        if ((covered >> i & 1) != 0 || (p.covered && (r.flags & contact_covered) != 0)) silence(r);
+    }
 }
 
 }  // namespace
+
+void mark_covered(WorldData& world, ColliderPair& p) {
+    alignas(Floor) std::byte room[max_mesh_manifolds * sizeof(Floor)];
+    auto* floors = reinterpret_cast<Floor*>(room);
+    const bool several = has_floor(p) && p.count > 1;
+    for (uint32_t i = 0; several && i < p.count; ++i) new (floors + i) Floor(world, touch_of(world, p, i));
+    const ColliderInfo& moved = world.colliders.info[moved_collider(p)];
+    p.covered = false;
+    for (uint32_t i = 0; i < p.count; ++i) {
+        bool covered = false;
+        for (uint32_t k = 0; several && k < p.count && !covered; ++k)
+            covered = k != i && is_covered(world, floors[i], floors[k], moved);
+        uint32_t& flags = world.records[p.first_record + i].flags;
+        flags = covered ? flags | contact_covered : flags & ~contact_covered;
+        p.covered |= covered;
+    }
+}
 
 void silence_seams(WorldData& world) {
     world.tasks.for_each(world.pairs.listed.count(), pairs_per_task, [&](int begin, int end, int) {

@@ -204,6 +204,9 @@ const BroadBox& box_of(const WorldData& world, uint32_t collider);
 void match_pairs(WorldData& world);
 void find_contacts(WorldData& world, float dt);
 void silence_seams(WorldData& world);
+// Tells by their flags which manifolds of a pair with a mesh the others silence, as long as they are kept.
+inline constexpr uint32_t contact_covered = 4;  // beside the flags that the solver reads
+void mark_covered(WorldData& world, ColliderPair& p);
 void update_islands(WorldData& world, float dt);
 void find_joint_groups(WorldData& world);
 void choose_substeps(WorldData& world, float dt);

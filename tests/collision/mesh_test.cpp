@@ -2,6 +2,7 @@
 // nowhere else, both sides are solid, names last.
 #include "meshes.h"
 
+#include "collision/mesh/candidates.h"
 #include "family.h"
 #include "geometry/mesh.h"
 
@@ -235,6 +236,96 @@ TEST(Mesh, SeparatedDistanceAgreesWithBruteForce) {
         }
     }
     EXPECT_GT(compared, 200);
+}
+
+// A contact of an edge or a corner is the nearest place to the shape for some way around: else its triangle's neighbour
+// is nearer, and a normal that leans over that would push sideways.
+TEST(Mesh, EdgesAndCornersAreTheNearestPlacesAround) {
+    for (float rise : {0.3f, 0.04f}) {
+        auto height = [&](float x, float z) { return rise * sin_cos(2.1f * x).sin * sin_cos(1.7f * z + 0.5f).cos; };
+        TriangleMesh ground = grid(12, 0.4f, height);
+        const MeshData& data = ground.data();
+        Solid mesh(ground);
+        Random random(13);
+        int edges = 0;
+        for (const Kind& kind : every_kind()) {
+            Solid shape(kind.shape);
+            for (int i = 0; i < 60; ++i) {
+                Quat turn = random.rotation();
+                CentredBox box = bounds(shape.geometry, turn);
+                Vec3 at{random.in(-1.5f, 1.5f), 0.0f, random.in(-1.5f, 1.5f)};
+                at.y = height(at.x, at.z) + box.half.y - box.centre.y + random.in(0.0f, 0.1f);
+                for (const Manifold& m : on(mesh, shape, at, turn, 0.1f)) {
+                    const ManifoldPoint& p = m.points[0];
+                    if (m.key >> 31 == 0 || m.follow == 0.0f || p.separation < 1e-3f) continue;
+                    const Vec3 foot = p.position - 0.5f * p.separation * m.normal;
+                    for (const MeshTriangle& t : data.triangles) {
+                        const Vec3 a = data.vertices[t.vertex[0]],
+                                   n = data.normals[static_cast<size_t>(&t - &data.triangles[0])];
+                        bool has_foot = absolute(dot(n, foot - a)) < 1e-4f;
+                        for (int k = 0; k < 3; ++k) {
+                            Vec3 from = data.vertices[t.vertex[k]], to = data.vertices[t.vertex[(k + 1) % 3]];
+                            has_foot &= dot(normalize(cross(n, to - from)), foot - from) > -1e-4f;
+                        }
+                        if (!has_foot) continue;
+                        ++edges;
+                        for (uint32_t v : t.vertex) {
+                            Vec3 way = data.vertices[v] - foot;
+                            EXPECT_LT(dot(m.normal, way), 0.02f * length(way) + 1e-4f) << kind.name << " " << i;
+                        }
+                    }
+                }
+            }
+        }
+        EXPECT_GT(edges, rise > 0.1f ? 100 : 10);
+    }
+}
+
+// Triangles kept while a shape moves away from where they were found change nothing, to the bit; nor do too many to
+// keep.
+TEST(Mesh, KeptTrianglesChangeNothing) {
+    for (float step : {0.4f, 0.05f}) {
+        auto height = [](float x, float z) { return 0.2f * sin_cos(2.1f * x).sin * sin_cos(1.7f * z + 0.5f).cos; };
+        Solid mesh(grid(step > 0.1f ? 16 : 96, step, height));
+        for (const Kind& kind : every_kind()) {
+            Solid shape(kind.shape);
+            MeshCandidates near;
+            const CentredBox box = bounds(shape.geometry, {});
+            int searches = 0, touching = 0;
+            for (int i = 0; i < 80; ++i) {
+                float s = 0.012f * static_cast<float>(i) - 0.5f;
+                Vec3 at{s, 0.0f, 0.7f * s};
+                at.y = height(at.x, at.z) + box.half.y - box.centre.y + 0.01f;
+                Quat turn = rotation_about(normalize(Vec3{1.0f, 0.2f, 0.5f}), 0.4f * s);
+                CollidePair pair = pair_of({mesh, {}}, {shape, turn}, at, 0.03f);
+                PairCache cache;
+                std::vector<Manifold> kept(max_mesh_manifolds), fresh = manifolds(pair);
+                const Vec3 before = near.lower;
+                const bool found = near.count >= 0;
+                kept.resize(static_cast<size_t>(collide(pair, cache, {}, kept.data(), max_mesh_manifolds, &near)));
+                searches += !found || !(near.lower == before);
+                touching += !kept.empty();
+                ASSERT_EQ(kept.size(), fresh.size()) << kind.name << " " << i;
+                for (size_t k = 0; k < kept.size(); ++k) {
+                    const Manifold &a = kept[k], &b = fresh[k];
+                    ASSERT_EQ(a.count, b.count);
+                    EXPECT_EQ(a.normal, b.normal);
+                    EXPECT_EQ(a.key, b.key);
+                    for (int j = 0; j < a.count; ++j) {
+                        EXPECT_EQ(a.points[j].position, b.points[j].position);
+                        EXPECT_EQ(a.points[j].separation, b.points[j].separation);
+                        EXPECT_EQ(a.points[j].id, b.points[j].id);
+                    }
+                }
+            }
+            EXPECT_GT(touching, 40) << kind.name;
+            EXPECT_LT(searches, 40) << kind.name;
+            EXPECT_GE(near.count, 1) << kind.name;
+            if (near.are_listed()) {
+                EXPECT_GT(searches, 1) << kind.name;
+            }
+        }
+    }
 }
 
 TEST(Mesh, AtMostTheDeepestManifoldsAreKept) {

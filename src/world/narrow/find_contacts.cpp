@@ -112,9 +112,22 @@ private:
         prefetch<3>(&world_.records[world_.pairs.pairs[numbers[i + prefetch_distance]].first_record]);
     }
 
+    // And for what a tested pair is collided by, where it will be and not in a batch.
+    void ask_for_input(int i) const {
+        if (i >= scratch_.motion.count || scratch_.motion.kept[i] > 0.0f) return;
+        const uint32_t number = scratch_.tested[i];
+        const ColliderPair& p = world_.pairs.pairs[number];
+        if (p.kind == PairKind::boxes) return;
+        prefetch(&world_.colliders.geometry[p.a]);
+        prefetch(&world_.colliders.geometry[p.b]);
+        if (p.capacity > 1) prefetch<sizeof(MeshCandidates) / 64>(&world_.pairs.near_triangles[p.surface]);
+        else prefetch<2>(&world_.pairs.caches[number]);
+    }
+
     void sort(int i) {
         const MotionBatch& motion = scratch_.motion;
         ask_for_records(scratch_.tested, i, motion.count);
+        ask_for_input(i + prefetch_distance);
         uint32_t index = scratch_.tested[i];
         ColliderPair& p = world_.pairs.pairs[index];
         if (motion.kept[i] > 0.0f) {
@@ -188,9 +201,11 @@ private:
     }
 
     void collide_mesh(ColliderPair& p, uint32_t index, float margin) {
+        for (uint32_t i = 1; i < p.count; ++i) prefetch<3>(&world_.records[p.first_record + i]);
         PairCache& cache = world_.pairs.caches[index];
         Manifold manifolds[max_mesh_manifolds];
-        int count = collide(collide_input(world_, p, margin), cache, settings(), manifolds, p.capacity);
+        int count = collide(collide_input(world_, p, margin), cache, settings(), manifolds, p.capacity,
+                            &world_.pairs.near_triangles[p.surface]);
         const ShapeFrame &a = world_.frames[collider_a(p)], &b = world_.frames[collider_b(p)];
         alignas(OldContact) std::byte room[max_mesh_manifolds * sizeof(OldContact)];
         auto* old = reinterpret_cast<OldContact*>(room);
@@ -206,6 +221,7 @@ private:
             r.pair = index;
         }
         finish(p, index, count, margin, cache.clearance);
+        mark_covered(world_, p);
     }
 
     // The pair's record number `i`, with its lasting parts filled in.

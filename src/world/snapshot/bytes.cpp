@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr char magic[8] = {'L', 'E', 'N', 'D', 'S', 'N', 'A', 'P'};
-constexpr uint32_t version = 2;
+constexpr uint32_t version = 3;
 constexpr size_t header_bytes = sizeof magic + 2 * sizeof(uint32_t), checksum_bytes = sizeof(uint64_t);
 
 uint64_t checksum(std::span<const uint8_t> bytes) {
@@ -150,7 +150,7 @@ void contact(Bytes& bytes, SavedContact& c) {
     r.point_count = points;
     bytes(r.normal, r.friction_impulse, r.twist_impulse, r.radius_a, r.radius_b, r.follow, r.arm_offset, r.key,
           r.triangle);
-    flags(bytes, c.rolls, c.fresh);
+    flags(bytes, c.rolls, c.fresh, c.covered);
     if (c.rolls) bytes(c.extra.impulse, c.extra.h);
     for (int j = 0; j < 4; ++j) {
         if (j < points) {

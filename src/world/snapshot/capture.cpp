@@ -102,6 +102,7 @@ void capture_pair(const WorldData& world, uint32_t number, SavedState& state) {
     for (uint32_t i = p.first_record; i < p.first_record + p.count; ++i) {
         SavedContact c{world.records[i], world.found_separations[i]};
         c.rolls = (c.record.flags & contact_rolls) != 0;
+        c.covered = (c.record.flags & contact_covered) != 0;
         if (c.rolls) c.extra = world.extras[i], c.fresh = c.extra.step == static_cast<uint32_t>(world.steps);
         state.contacts.push_back(c);
     }

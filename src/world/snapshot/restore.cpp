@@ -217,6 +217,7 @@ void apply_pair(WorldData& world, const SavedPair& saved, const SavedContact* co
         ContactRecord& r = world.records[p.first_record + k];
         r = contacts[k].record;
         prepare_record(world, p, r);
+        if (contacts[k].covered) r.flags |= contact_covered, p.covered = true;
         set_surface(world, p, r);
         r.pair = number;
         world.found_separations[p.first_record + k] = contacts[k].found;

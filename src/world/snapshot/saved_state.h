@@ -42,6 +42,7 @@ struct SavedContact {
     ContactRecord record;
     FoundSeparations found;
     bool rolls = false, fresh = false;  // `extra` holds its impulse, and that is of the last step
+    bool covered = false;               // see mark_covered()
     ContactExtra extra{};
 };
 

@@ -24,7 +24,7 @@ struct TriangleContact {
     bool face;    // the normal is that of the triangle
     float radius, follow;
     uint32_t original;  // the triangle
-    uint8_t material = 0;
+    uint8_t material;
     int count = 0;
     MeshPoint points[max_clipped_points];
 };

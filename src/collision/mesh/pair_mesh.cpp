@@ -6,12 +6,11 @@
 // of the shortest way out; only edges that can touch need GJK and EPA.
 #include <bit>
 
-#include "collision/mesh_filter.h"
-#include "collision/mesh_manifolds.h"
+#include "collision/mesh/candidates.h"
+#include "collision/mesh/filter.h"
+#include "collision/mesh/footing.h"
+#include "collision/mesh/manifolds.h"
 #include "collision/pair.h"
-#include "collision/triangle.h"
-#include "geometry/hull.h"
-#include "geometry/triangle_surface.h"
 
 namespace lendulet {
 namespace {
@@ -21,77 +20,76 @@ constexpr float upright = 0.9995f;
 // Sine of the angle by which a contact may lean across an edge that cannot touch and still be one of this triangle's
 // face.
 constexpr float lean_tolerance = 1e-3f;
-// Heights are equal within this part of the shape's size.
-constexpr float level = 1e-4f;
+constexpr float level = MeshQuery::level;
 // Cosine from which the shape's own face is the reference for an edge of the mesh.
 constexpr float flat = 0.998f;
 
-struct MeshQuery {
-    const CollidePair& pair;
-    const CollideSettings& settings;
-    TriangleSurface surface;
-    const Geometry& shape;
-    Quat turn;          // shape's frame to mesh axes
-    Vec3 position;      // of the shape, mesh frame
-    Vec3 lower, upper;  // bounds of shape and margin relative to its position, mesh axes
-    Vec3 centre;        // of the shape, relative to its position, mesh axes
-    float size;         // largest half extent, m
-
-    // The shape's face and farthest core point towards the last triangle's plane: neighbours in one plane share them.
-    Vec3 facing{};
+// The shape's face and farthest core point towards a plane: neighbours in one plane share them.
+struct MeshCollision : MeshQuery {
+    using MeshQuery::MeshQuery;
+    Vec3 facing{};  // the plane's normal
     Face face;
+    int32_t face_number = -1;  // of a box or hull
     Vec3 lowest;
+
+    Footing footing;
+    // Triangles that the shape is beside: their edges are left until it is known what else it stands on.
+    static constexpr int most_beside = 32;
+    int beside_count = 0;
+    uint32_t beside[most_beside];
+    uint8_t beyond[most_beside];  // their edges
 };
 
-MeshQuery make_query(const CollidePair& pair, const CollideSettings& settings) {
-    Quat turn = conjugate(pair.rotation_a) * pair.rotation_b;
-    CentredBox box = bounds(*pair.b, turn);
-    float size = max_component(box.half);
-    float reach = pair.margin + level * size;
-    Vec3 half = box.half + Vec3{reach, reach, reach};
-    Vec3 centre = pair.b->kind == GeometryKind::hull ? rotate(turn, pair.b->hull->centroid) : Vec3{};
-    return {pair,
-            settings,
-            TriangleSurface(*pair.a),
-            *pair.b,
-            turn,
-            rotate_inverse(pair.rotation_a, pair.offset),
-            box.centre - half,
-            box.centre + half,
-            centre,
-            size,
-            {},
-            {},
-            {}};
-}
+// By how much the box within which triangles are kept is wider than needed: of the shape's size and of the margin,
+// which tells how far it may move in a step.
+constexpr float leeway_of_size = 0.08f, leeway_of_margin = 2.0f, most_leeway = 0.5f;
+// Wider than rounding, where none are kept: whether a triangle is near is the filter's to say.
+constexpr float least_leeway = 0.01f;
 
 // visit(triangle index, apart) for those that may come within `limit` of the core, in the order of the mesh.
 template <class Visit>
-void for_each_near(const MeshQuery& q, float limit, Visit&& visit) {
+void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&& visit) {
     const MeshFilter filter(q.surface, q.shape, q.turn, q.position, q.lower, q.upper, q.centre, limit, level * q.size);
-    uint32_t waiting[MeshFilter::lanes];
-    int count = 0;
-    auto flush = [&] {
-        MeshFilter::Result result = filter.test(waiting, count);
-        for (; result.live != 0; result.live &= result.live - 1) {
-            int i = std::countr_zero(result.live);
-            visit(waiting[i], (result.apart >> i & 1) != 0);
+    auto look_through = [&](const uint32_t* triangles, int count) {
+        for (int i = 0; i < count; ++i) q.surface.ask_for(triangles[i]);
+        for (int i = 0; i < count; ++i) q.surface.ask_for_corners(triangles[i]);
+        for (int first = 0; first < count; first += MeshFilter::lanes) {
+            const int left = count - first;
+            MeshFilter::Result result =
+                filter.test(triangles + first, left < MeshFilter::lanes ? left : MeshFilter::lanes);
+            for (; result.live != 0; result.live &= result.live - 1) {
+                int i = std::countr_zero(result.live);
+                visit(triangles[first + i], (result.apart >> i & 1) != 0);
+            }
         }
-        count = 0;
     };
-    for_each_triangle(q.surface, q.position + q.lower, q.position + q.upper, [&](uint32_t index) {
+    const Vec3 lower = q.position + q.lower, upper = q.position + q.upper;
+    if (kept != nullptr && !kept->hold(lower, upper)) {
+        float leeway = leeway_of_size * q.size + leeway_of_margin * q.pair.margin;
+        kept->find(q.surface, lower, upper, minimum(leeway, most_leeway * q.size));
+    }
+    uint32_t waiting[MeshCandidates::capacity];
+    if (kept != nullptr && kept->are_listed()) return look_through(waiting, kept->near(lower, upper, waiting));
+    int count = 0;
+    const float leeway = least_leeway * q.size;
+    const Vec3 wider{leeway, leeway, leeway};
+    for_each_triangle(q.surface, lower - wider, upper + wider, [&](uint32_t index) {
         waiting[count++] = index;
-        if (count == MeshFilter::lanes) flush();
+        if (count < MeshCandidates::capacity) return;
+        look_through(waiting, count);
+        count = 0;
     });
-    if (count > 0) flush();
+    look_through(waiting, count);
 }
 
-void start(const Triangle& t, Vec3 normal, bool face, float radius, float follow, TriangleContact& out) {
+void start(const MeshQuery& q, const Triangle& t, Vec3 normal, bool face, float radius, float follow,
+           TriangleContact& out) {
     out.normal = normal;
     out.face = face;
     out.radius = radius;
     out.follow = follow;
     out.original = t.original;
+    out.material = q.surface.material(t.original);
     out.count = 0;
 }
 
@@ -104,6 +102,23 @@ bool leans_across(const Triangle& t, uint8_t edges, Vec3 normal) {
     for (int i = 0; i < 3; ++i) {
         bool closed = (edges & ~t.touching) >> i & 1;
         if (closed && dot(normal, normalize(out_across(t, i))) > lean_tolerance) return true;
+    }
+    return false;
+}
+
+// Whether a surface beyond these edges of the triangle is nearer to what is apart from it by the unit `normal` over
+// `point`, which is on them.
+bool is_nearer_across(const MeshQuery& q, const Triangle& t, uint8_t edges, Vec3 point, Vec3 normal) {
+    for (int i = 0; i < 3; ++i) {
+        if ((edges >> i & 1) == 0) continue;
+        int32_t across = q.surface.neighbour(t.index, i);
+        if (across < 0) continue;
+        Triangle n = make_triangle(q.surface, static_cast<uint32_t>(across), q.position, q.centre);
+        if (n.from_behind != t.from_behind) continue;
+        int shared = 0;
+        while (shared < 2 && q.surface.neighbour(n.index, shared) != static_cast<int32_t>(t.index)) ++shared;
+        Vec3 inwards = n.vertices[(shared + 2) % 3] - point;
+        if (dot(normal, inwards) > lean_tolerance * length(inwards)) return true;
     }
     return false;
 }
@@ -121,23 +136,51 @@ void sphere_triangle(const MeshQuery& q, const Triangle& t, TriangleContact& out
     if (!face) {
         normal = (1.0f / distance) * between;
         if (leans_across(t, nearest.edges, normal)) return;  // the neighbour is nearer
+        if (is_nearer_across(q, t, nearest.edges, nearest.point, normal)) return;
         face = dot(normal, t.normal) > 1.0f - 0.5f * lean_tolerance * lean_tolerance;
         if (face) normal = t.normal;
     }
     float separation = distance - radius;
-    start(t, normal, face, radius, face ? 1.0f : nearest.edges & (nearest.edges - 1) ? 0.0f : 0.5f, out);
+    start(q, t, normal, face, radius, face ? 1.0f : nearest.edges & (nearest.edges - 1) ? 0.0f : 0.5f, out);
     add_point(nearest.point + (0.5f * separation) * normal, separation, 0, out);
 }
 
 // --- faces
 
-void look_at(MeshQuery& q, Vec3 normal) {
+// Which face of a box or hull looks along a direction; -1: of other shapes, whose faces turn with the direction.
+int32_t number_of_face(const Geometry& g, Vec3 direction) {
+    if (g.kind == GeometryKind::hull) return static_cast<int32_t>(support_face(*g.hull, direction));
+    if (g.kind != GeometryKind::box) return -1;
+    Vec3 size = absolute(direction);
+    int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    return 2 * axis + (component(direction, axis) >= 0.0f ? 1 : 0);
+}
+
+void look_at(MeshCollision& q, Vec3 normal) {
     if (q.facing == normal) return;
     q.facing = normal;
     Vec3 down = rotate_inverse(q.turn, -normal);
+    q.lowest = rotate(q.turn, support_core(q.shape, down));
+    const int32_t number = number_of_face(q.shape, down);
+    if (number >= 0 && number == q.face_number) return;
+    q.face_number = number;
     q.face = best_face(q.shape, down);
     transform_face({{}, q.turn}, q.face);
-    q.lowest = rotate(q.turn, support_core(q.shape, down));
+}
+
+// Whether all of the shape's face is beyond an edge of the triangle, and its lowest point, too: over the triangle is
+// then nothing of the face.
+bool is_beside(const MeshCollision& q, const Triangle& t, uint8_t beyond) {
+    const float slack = 10.0f * level * q.size;  // more than clipping allows
+    for (int i = 0; i < 3; ++i) {
+        if ((beyond >> i & 1) == 0) continue;
+        const Vec3 out = out_across(t, i);
+        const float edge = dot(out, t.vertices[i]), line = edge + slack * length(out);
+        bool outside = dot(out, q.lowest) > edge;
+        for (int k = 0; k < q.face.count && outside; ++k) outside = dot(out, q.face.vertices[k]) > line;
+        if (outside) return true;
+    }
+    return false;
 }
 
 bool over(const Triangle& t, Vec3 p) {
@@ -148,7 +191,7 @@ bool over(const Triangle& t, Vec3 p) {
 }
 
 // The part of the shape's face over the triangle, and its lowest point where that is over it and below the face.
-void clip_to_triangle(const MeshQuery& q, const Triangle& t, ClippedFace& clipped) {
+void clip_to_triangle(const MeshCollision& q, const Triangle& t, ClippedFace& clipped) {
     clip_face(face_of(t, q.surface), q.face, false, q.pair.margin + q.shape.rounding, clipped);
     Vec3 tip = q.lowest - clipped.origin;
     float height = dot(tip, t.normal), deepest = 3e38f;
@@ -164,9 +207,9 @@ void clip_to_triangle(const MeshQuery& q, const Triangle& t, ClippedFace& clippe
     }
 }
 
-void face_contact(const MeshQuery& q, const Triangle& t, const ClippedFace& clipped, TriangleContact& out) {
+void face_contact(const MeshCollision& q, const Triangle& t, const ClippedFace& clipped, TriangleContact& out) {
     float radius = q.shape.rounding;
-    start(t, t.normal, true, radius + q.face.extra_radius, 1.0f, out);
+    start(q, t, t.normal, true, radius + q.face.extra_radius, 1.0f, out);
     for (int i = 0; i < clipped.count && i < max_clipped_points; ++i) {
         const FacePoint& p = clipped.points[i];
         add_point(clipped.point(p, 0.5f * (p.separation - radius)), p.separation - radius, p.id, out);
@@ -177,7 +220,7 @@ void face_contact(const MeshQuery& q, const Triangle& t, const ClippedFace& clip
 // of the core is over the triangle. Overlapping, take a segment from a lowest point p to the centre: leaving the
 // triangle by the side over edge i takes at least the distance of that edge from the plane of the segment and the
 // edge's direction, and the whole core needs at least as much as a segment in it.
-bool is_shortest(const MeshQuery& q, const Triangle& t, const ClippedFace& clipped) {
+bool is_shortest(const MeshCollision& q, const Triangle& t, const ClippedFace& clipped) {
     float lowest = dot(t.normal, q.lowest - clipped.origin), limit = lowest + level * q.size;
     Vec3 p{};
     float count = 0.0f;
@@ -236,7 +279,7 @@ bool on_shape_face(const MeshQuery& q, const Triangle& t, const Face& face, Tria
     float radius = q.shape.rounding;
     clip_face(face, face_of(t, q.surface), true, q.pair.margin + radius, clipped);
     if (clipped.count == 0) return false;
-    start(t, -clipped.normal, false, radius, 0.0f, out);
+    start(q, t, -clipped.normal, false, radius, 0.0f, out);
     for (int i = 0; i < clipped.count; ++i) {
         const FacePoint& p = clipped.points[i];
         add_point(clipped.point(p, 0.5f * (p.separation + radius)), p.separation - radius, p.id, out);
@@ -251,7 +294,7 @@ bool along_edge(const MeshQuery& q, const Triangle& t, const Face& line, uint8_t
         PointPair ends[2];
         if (!(edges >> i & 1)) continue;
         if (!shared_stretch(t.vertices[i], t.vertices[(i + 1) % 3], line.vertices[0], line.vertices[1], ends)) continue;
-        start(t, normal, false, q.shape.rounding + line.extra_radius, 0.0f, out);
+        start(q, t, normal, false, q.shape.rounding + line.extra_radius, 0.0f, out);
         for (uint32_t k = 0; k < 2; ++k) {
             float separation = dot(ends[k].on_b - ends[k].on_a, normal) - q.shape.rounding;
             if (separation > q.pair.margin) continue;
@@ -272,54 +315,84 @@ void edge_contact(const MeshQuery& q, const Triangle& t, const ConvexDistance& n
     if (face.count == 2 && along_edge(q, t, face, edges, normal, out)) return;
     float radius = q.shape.rounding;
     bool vertex = (edges & (edges - 1)) != 0;
-    start(t, normal, false, radius + (face.count == 1 ? face.extra_radius : 0.0f), vertex ? 0.0f : 0.5f, out);
+    start(q, t, normal, false, radius + (face.count == 1 ? face.extra_radius : 0.0f), vertex ? 0.0f : 0.5f, out);
     Vec3 position = 0.5f * (nearest.point_a + nearest.point_b - radius * normal);
     add_point(position, nearest.distance - radius, point_id(edge_feature(t.original, edges), 0), out);
 }
 
+// Where the nearest points of core and triangle are on its edges or corners, what these give; true where that is all
+// there is to it.
+bool rim_contact(const MeshQuery& q, const Triangle& t, const ConvexDistance& nearest, TriangleContact& out) {
+    float lean = dot(nearest.normal, t.normal);
+    uint8_t edges = edges_at(q, t, nearest.point_a);
+    if (lean >= upright || edges == 0) return false;
+    bool overlapping = nearest.distance <= 0.0f;
+    bool wrong_side = overlapping && lean < 0.0f;
+    bool closed = leans_across(t, edges, nearest.normal);
+    if (!wrong_side && !closed) {
+        if (overlapping || !is_nearer_across(q, t, edges, nearest.point_a, nearest.normal))
+            edge_contact(q, t, nearest, edges, out);
+        return true;
+    }
+    return overlapping && closed && neighbour_pushes(q, t, edges);
+}
+
 // `apart`: the core is known to be farther than the margin from the triangle itself, though not from its plane.
-void convex_triangle(MeshQuery& q, const Triangle& t, bool apart, TriangleContact& out) {
+void convex_triangle(MeshCollision& q, const Triangle& t, bool apart, TriangleContact& out) {
     look_at(q, t.normal);
     float limit = q.pair.margin + q.shape.rounding;
     float height = dot(t.normal, q.lowest - t.vertices[0]);
     if (height > limit) return;
+    const uint8_t beyond = beyond_edges(q, t, q.lowest);
+    q.footing.note(q, t, beyond);
     ClippedFace clipped;
-    clip_to_triangle(q, t, clipped);
+    if (!is_beside(q, t, beyond)) clip_to_triangle(q, t, clipped);
     // A face within a flat or hollow part can touch with its own normal only, and so can the part of one within a
     // gently rolling surface that the shape is over. Overlapping from behind, the way out may be across an edge.
-    bool gentle = (t.touching & t.sharp) == 0 && !apart && clipped.count > 0;
-    bool sure = (t.touching == 0 || gentle) && (height >= 0.0f || !t.from_behind || t.bent == 0);
+    const bool gentle = (t.touching & t.sharp) == 0, over_face = clipped.count > 0;
+    bool sure =
+        (t.touching == 0 || (gentle && !apart && over_face)) && (height >= 0.0f || !t.from_behind || t.bent == 0);
     if (sure || is_shortest(q, t, clipped)) return face_contact(q, t, clipped, out);
     if (apart) return;
-    ConvexDistance nearest = distance_to(q, t, limit);
-    if (nearest.distance > limit) return;
-    float lean = dot(nearest.normal, t.normal);
-    uint8_t edges = edges_at(q, t, nearest.point_a);
-    if (lean < upright && edges != 0) {
-        bool overlapping = nearest.distance <= 0.0f;
-        bool wrong_side = overlapping && lean < 0.0f;
-        bool closed = leans_across(t, edges, nearest.normal);
-        if (!wrong_side && !closed) return edge_contact(q, t, nearest, edges, out);
-        if (overlapping && closed && neighbour_pushes(q, t, edges)) return;
+    if (gentle && !over_face && q.beside_count < MeshCollision::most_beside) {
+        q.beyond[q.beside_count] = beyond;
+        q.beside[q.beside_count++] = t.index;
+        return;
     }
+    ConvexDistance nearest = distance_to(q, t, limit);
+    if (nearest.distance > limit || rim_contact(q, t, nearest, out)) return;
     face_contact(q, t, clipped, out);
+}
+
+// What the shape is beside, once all that it is over is known.
+void beside_triangle(const MeshCollision& q, int i, TriangleContact& out) {
+    Triangle t = make_triangle(q.surface, q.beside[i], q.position, q.centre);
+    if (!q.footing.may_touch_rim(q, t, q.beyond[i])) return;
+    float limit = q.pair.margin + q.shape.rounding;
+    ConvexDistance nearest = distance_to(q, t, limit);
+    if (nearest.distance <= limit) rim_contact(q, t, nearest, out);
 }
 
 }  // namespace
 
-int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings, Manifold* out, int capacity) {
-    MeshQuery q = make_query(pair, settings);
+int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings, MeshCandidates* kept, Manifold* out,
+                        int capacity) {
+    MeshCollision q(pair, settings);
     MeshManifolds manifolds(10.0f * level * q.size);
     const bool ball = pair.b->kind == GeometryKind::point, one_sided = q.surface.one_sided();
-    for_each_near(q, pair.margin + q.shape.rounding, [&](uint32_t index, bool apart) {
+    for_each_near(q, pair.margin + q.shape.rounding, kept, [&](uint32_t index, bool apart) {
         Triangle t = make_triangle(q.surface, index, q.position, q.centre);
         if (t.from_behind && one_sided) return;
         TriangleContact contact;
-        contact.material = q.surface.material(t.original);
         if (ball) sphere_triangle(q, t, contact);
         else convex_triangle(q, t, apart, contact);
         manifolds.add(contact);
     });
+    for (int i = 0; i < q.beside_count; ++i) {
+        TriangleContact contact;
+        beside_triangle(q, i, contact);
+        manifolds.add(contact);
+    }
     int count = manifolds.write(out, capacity < max_mesh_manifolds ? capacity : max_mesh_manifolds);
     for (int k = 0; k < count; ++k) {
         Manifold& m = out[k];
@@ -332,9 +405,9 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
 }
 
 bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& settings) {
-    MeshQuery q = make_query(pair, settings);
+    const MeshQuery q(pair, settings);
     bool touching = false;
-    for_each_near(q, q.shape.rounding, [&](uint32_t index, bool apart) {
+    for_each_near(q, q.shape.rounding, nullptr, [&](uint32_t index, bool apart) {
         if (touching || apart) return;
         Triangle t = make_triangle(q.surface, index, q.position, q.centre);
         float radius = q.shape.rounding;

@@ -1,4 +1,4 @@
-#include "collision/mesh_filter.h"
+#include "collision/mesh/filter.h"
 
 #include "geometry/hull.h"
 #include "math/wide/wide.h"

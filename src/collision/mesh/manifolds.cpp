@@ -1,4 +1,4 @@
-#include "collision/mesh_manifolds.h"
+#include "collision/mesh/manifolds.h"
 
 namespace lendulet {
 namespace {

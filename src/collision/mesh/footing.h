@@ -1,0 +1,46 @@
+// Over which triangles a shape's lowest points lie, and so which edges of gently bent triangles it can touch.
+//
+// Let n lean from the normal of a triangle T towards that of its neighbour across an edge. The core's lowest point
+// along n then moves back over T, or stays (the support of a convex shape is monotone). Where the shape touches the
+// edge, in a direction between the two normals, the lowest point along it is over the edge; so the lowest point along
+// T's own normal is beyond the edge, and that along the neighbour's is beyond it seen from there. Likewise no corner of
+// a triangle is touched whose sides there the triangle's lowest point is within. A shape that is beside T, and rests on
+// the neighbour, needs no closest points on T.
+#pragma once
+
+#include <cstdint>
+
+#include "collision/mesh/query.h"
+#include "collision/mesh/triangle.h"
+
+namespace lendulet {
+
+// Bit i: the core's lowest point along the triangle's normal is beyond edge i, or not surely within.
+uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, Vec3 lowest);
+
+// The triangles that one query has looked at.
+class Footing {
+public:
+    // Beyond the capacity nothing is kept, and more closest points are sought than necessary.
+    void note(const MeshQuery& q, const Triangle& t, uint8_t beyond);
+    // False only where the shape cannot touch an edge or corner of the triangle, all of whose edges are gentle or
+    // cannot touch; of triangles that the lowest point is not over.
+    bool may_touch_rim(const MeshQuery& q, const Triangle& t, uint8_t beyond) const;
+
+private:
+    static constexpr int capacity = 32;
+    struct Noted {
+        uint32_t index, vertex[3];
+        uint8_t beyond;
+        bool from_behind;
+    };
+
+    // Of any triangle, noted or not.
+    Noted look_up(const MeshQuery& q, uint32_t index) const;
+    bool is_settled(uint32_t vertex, bool from_behind) const;
+
+    int count_ = 0;
+    Noted noted_[capacity];
+};
+
+}  // namespace lendulet
