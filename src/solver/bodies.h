@@ -21,10 +21,10 @@ struct alignas(64) BodyState {
     float v[3];          // change of the velocity since the start of the step, m/s
     float inverse_mass;  // 0: not moved by constraints
     float w[3];          // change of the angular velocity, world axes, rad/s
-    float unused0;
-    float dp[3];   // displacement since the start of the step, m
-    float gyro_z;  // see BodyInertia
-    float dq[4];   // rotation since the start of the step
+    float drift_x;       // how far the last drift moved the body, until the kick; the rest is in BodyInertia
+    float dp[3];         // displacement since the start of the step, m
+    float gyro_z;        // see BodyInertia
+    float dq[4];         // rotation since the start of the step
 };
 
 // Velocities at the start of the step: never written while it runs. Rows work on changes, so that what contacts add and
@@ -37,8 +37,9 @@ struct alignas(32) BodyStart {
 // World inverse inertia of this substep: xx yy zz xy xz yz.
 struct alignas(32) BodyInertia {
     float inverse[6];
-    float gyro_x,
-        gyro_y;  // where there are joints, from kick to drift: angular acceleration by the body's own spin, rad/s^2
+    // From drift to kick how far the drift moved the body along y and z, m; where there are joints, from kick to drift
+    // the angular acceleration by the body's own spin, rad/s^2.
+    float gyro_x, gyro_y;
 };
 
 // Centre of mass at the start of the step, m, and what rounding took from it.
@@ -57,7 +58,7 @@ struct alignas(64) BodyMotion {
     float angular_momentum[3];   // L, world axes
     float anisotropy;            // largest over smallest principal moment; 1: turns about a fixed axis
     float acceleration[3];       // gravity and applied forces over the substep, damping included
-    float free;                  // 1: no constraint acts on this body in this step
+    float free;                  // 1: no constraint acts on this body in this step; -1: one to another moving body
     float torque[3];             // applied, world axes, damping included
     float joints;                // 1: has joints; 2: and its group touches nothing: a split kick. Set by the solver
     float change_v[3], unused1;  // how the last substep changed velocity and L: the acceleration the drift expects
@@ -75,9 +76,8 @@ struct alignas(64) BodyBlock {
     Lanes linear_loss, angular_loss, anisotropy, free, joints;
     Lanes L[3];
     Lanes v_ref[3], w_ref[3];  // velocities as the running pass of constraints found them
-    // What constraints added since the last kick: the next substep's warm start. Of bodies with joints dw is angular
-    // momentum.
-    Lanes dv[3], dw[3];
+    // What constraints added to v and L since the last kick: the next substep's warm start.
+    Lanes dv[3], dL[3];
     Lanes v_start[3], L_start[3];    // velocity and L at the start of the substep ...
     Lanes change_v[3], change_L[3];  // ... and how the substep before changed them
 };

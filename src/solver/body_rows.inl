@@ -6,17 +6,17 @@
 // (Simo, Wong 1991; Hairer, Lubich, Wanner, "Geometric Numerical Integration", ch. VII), which keeps the energy of
 // tumbling bodies.
 //
-// Warm start: what constraints added to a body's velocity in the last substep is M^-1 J^T lambda of their final
-// impulses, so adding it again warm-starts every row of the body at once.
+// Warm start: what constraints added to a body's velocity and angular momentum in the last substep is J^T lambda of
+// their final impulses, so adding it again warm-starts every row of the body at once. Rows then bring the angular part
+// over to their present arms: see ContactRow::overdue and joints/passes.inl.
 //
 // Drift: a body that accelerates evenly moves by the mean of its velocities at both ends of the substep, which makes
 // free flight, sliding and swinging second-order accurate; a body that is being stopped moves by its final velocity,
 // which is what its contacts asked for. Evenly means that the velocity changes now as it did in the substep before.
 //
-// Bodies with joints (see joints/passes.inl): what constraints added to their angular momentum is repeated, rather than
-// what they added to w, and the drift goes by the velocity that the joints' biased pass chose. Where nothing but joints
-// constrains a group of bodies, the kick is split: half of the applied forces acts before the first drift, half after
-// the last one, all of them in between. Elsewhere all of the kick comes first, as contacts want it.
+// Bodies with joints (see joints/passes.inl): the drift goes by the velocity that the joints' biased pass chose. Where
+// nothing but joints constrains a group of bodies, the kick is split: half of the applied forces acts before the first
+// drift, half after the last one, all of them in between. Elsewhere all of the kick comes first, as contacts want it.
 
 // Lanes [first, first + W) of the components of a BodyBlock.
 template <int W>
@@ -185,7 +185,7 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int
         auto movable = x.inverse_mass > zero;
         JointMode<F> mode{};
         if (k.joints) mode = joint_mode(y.get(b.joints));
-        Vec3T<F> L = y.get(b.L), dv = zero_vector<F>(), dw = dv;
+        Vec3T<F> L = y.get(b.L), dv = zero_vector<F>(), dL = dv;
         if (!k.first) {
             Vec3T<F> dp;
             QuatT<F> dq;
@@ -193,7 +193,7 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int
             Vec3T<F> rv = x.v - y.get(b.v_ref), rw = x.w - y.get(b.w_ref);
             Vec3T<F> more_L = apply_principal(multiply(dq, y.get(b.q0)), y.get(b.inertia), rw);
             dv = y.get(b.dv) + rv;
-            dw = y.get(b.dw) + (k.joints ? select(mode.jointed > zero, more_L, rw) : rw);
+            dL = y.get(b.dL) + more_L;
             L = L + more_L;
             y.put(b.change_v, x.v - y.get(b.v_start));
             y.put(b.change_L, L - y.get(b.L_start));
@@ -211,12 +211,12 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int
         if (k.joints) {
             F scale = select(mode.split > zero, splat<F>(k.repeat_scale), splat<F>(1.0f));
             dv = scale * dv;
-            Vec3T<F> more_L = scale * dw;
-            dw = select(mode.jointed > zero, I * more_L, dw);
-            more_L = select(mode.jointed > zero, more_L, zero_vector<F>());
+            dL = scale * dL;
+        }
+        Vec3T<F> dw = I * dL;
+        if (k.joints) {
             auto tumbles = y.get(b.anisotropy) > splat<F>(1.0f);
-            if (mask_bits(tumbles) != 0)
-                store_gyro<W>(bodies, c.index, I, select(tumbles, L + more_L, zero_vector<F>()), start_w + (x.w + dw));
+            store_gyro<W>(bodies, c.index, I, select(tumbles, L + dL, zero_vector<F>()), start_w + (x.w + dw));
         }
         y.put(b.L, L);
         y.put(b.v_ref, x.v);
@@ -227,12 +227,17 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int
     }
 }
 
-// The change per substep that an evenly accelerating body shows; none for a body that is being stopped or pushed.
+// The change per substep that an evenly accelerating body shows; none for a body that is being stopped or pushed, nor
+// for one that is pushed by another moving body: places must follow momenta where impulses between bodies act, or their
+// angular momentum about each other changes. `pushed`: what constraints changed in this substep.
 template <class F>
-LENDULET_FORCE_INLINE Vec3T<F> even_change(Vec3T<F> now, Vec3T<F> before, F free) {
+LENDULET_FORCE_INLINE Vec3T<F> even_change(Vec3T<F> now, Vec3T<F> before, F free, Vec3T<F> pushed) {
     Vec3T<F> d = now - before;
     auto even = dot(d, d) <= splat<F>(0.25f) * dot(before, before);
-    return select(free > splat<F>(0.0f), now, select(even, before, zero_vector<F>()));
+    const F zero = splat<F>(0.0f);
+    F untouched = select(dot(pushed, pushed) > zero, zero, splat<F>(1.0f));
+    free = select(free < zero, select(untouched > zero, untouched, free), free);
+    return select(free > zero, now, select(free < zero, zero_vector<F>(), select(even, before, zero_vector<F>())));
 }
 
 template <int W>
@@ -254,18 +259,18 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
         Vec3T<F> more_L = apply_principal(multiply(dq, q0), y.get(b.inertia), dw);
         Vec3T<F> L = y.get(b.L) + more_L;
 
-        Vec3T<F> change_v = even_change(x.v - y.get(b.v_start), y.get(b.change_v), free);
-        Vec3T<F> change_L = even_change(L - y.get(b.L_start), y.get(b.change_L), free);
+        Vec3T<F> change_v = even_change(x.v - y.get(b.v_start), y.get(b.change_v), free, dv);
+        Vec3T<F> change_L = even_change(L - y.get(b.L_start), y.get(b.change_L), free, dv);
         JointMode<F> mode{};
         if (k.joints) {
             mode = joint_mode(y.get(b.joints));
             change_v = select(mode.jointed > zero, zero_vector<F>(), change_v);
             change_L = select(mode.jointed > zero, zero_vector<F>(), change_L);
-            dw = select(mode.jointed > zero, more_L, dw);
         }
         y.put(b.dv, dv);
-        y.put(b.dw, dw);
-        dp = dp + splat<F>(k.h) * (y.get(b.start_v) + (x.v - half * change_v));
+        y.put(b.dL, more_L);
+        Vec3T<F> moved = splat<F>(k.h) * (y.get(b.start_v) + (x.v - half * change_v));
+        dp = dp + moved;
         dq = turn_at_constant_L<W>(dq, q0, L - half * change_L, inverse, start_w + x.w, anisotropy, k.h);
 
         SymMat3T<F> I = rotate_diagonal(rotation_matrix<F>(multiply(dq, q0), splat<F>(1.0f)), inverse);
@@ -282,11 +287,11 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
         if (second_half) {
             F scale = splat<F>(k.end_scale) * mode.split;
             x.v = x.v + scale * dv;
-            x.w = x.w + I * (scale * dw);
+            x.w = x.w + I * (scale * more_L);
         }
-        F velocity[8] = {x.v.x, x.v.y, x.v.z, x.inverse_mass, x.w.x, x.w.y, x.w.z, x.unused};
+        F velocity[8] = {x.v.x, x.v.y, x.v.z, x.inverse_mass, x.w.x, x.w.y, x.w.z, moved.x};
         F place[8] = {dp.x, dp.y, dp.z, zero, dq.x, dq.y, dq.z, dq.w};
-        F inertia[8] = {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz, zero, zero};
+        F inertia[8] = {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz, moved.y, moved.z};
         scatter8<W>(floats_of(state), c.index, 16, 0, velocity);
         scatter8<W>(floats_of(state), c.index, 16, 8, place);
         scatter8<W>(floats_of(bodies.inertia.data()), c.index, 8, 0, inertia);

@@ -55,11 +55,13 @@ struct alignas(64) ContactRow {
     F shift;           // the separations' change since the start of the step, at the centre; by relax
     F push_speed;      // fastest that overlap is undone
     F bounce_speed;    // -1, or hugely negative where e = 0: times a speed, the approach that only impacts handle
+    F follow;          // share of the arms' motion that A's arm makes
+    Vec3T<F> overdue;  // angular impulse that the held impulses lack since the bodies moved; by relax
     PatchPoint<F, P> p[P];
     [[no_unique_address]] PatchTurn<F, P> turn;
     // Read by relax alone.
     Vec3T<F> ra, rb;  // arms of the centre at the start of the step
-    F follow, radius_a, radius_b;
+    F radius_a, radius_b;
     Vec3T<F> start_slip;  // relative velocity of the centre at the start of the step
     Vec3T<F> start_turn;  // angular velocity then of the bodies whose arms move, weighted by how much they do
     F static_friction, dynamic_friction;
@@ -75,7 +77,7 @@ struct BodyArrays {
 template <class F>
 struct WideVelocity {
     Vec3T<F> v, w;
-    F inverse_mass, unused;
+    F inverse_mass, drift_x;
 };
 
 template <int W>
@@ -87,7 +89,7 @@ LENDULET_FORCE_INLINE WideVelocity<Wide<float, W>> load_velocity(const BodyState
 }
 template <int W>
 LENDULET_FORCE_INLINE void store_velocity(BodyState* s, const int32_t* i, const WideVelocity<Wide<float, W>>& x) {
-    Wide<float, W> p[4] = {x.v.x, x.v.y, x.v.z, x.inverse_mass}, q[4] = {x.w.x, x.w.y, x.w.z, x.unused};
+    Wide<float, W> p[4] = {x.v.x, x.v.y, x.v.z, x.inverse_mass}, q[4] = {x.w.x, x.w.y, x.w.z, x.drift_x};
     scatter4<W>(floats_of(s), i, 16, 0, p);
     scatter4<W>(floats_of(s), i, 16, 4, q);
 }
@@ -124,13 +126,23 @@ LENDULET_FORCE_INLINE WideVelocity<Wide<float, W>> load_velocity_at(const BodySt
 template <int W>
 LENDULET_FORCE_INLINE void store_velocity_at(BodyState* s, const int32_t* place,
                                              const WideVelocity<Wide<float, W>>& x) {
-    Wide<float, W> p[8] = {x.v.x, x.v.y, x.v.z, x.inverse_mass, x.w.x, x.w.y, x.w.z, x.unused};
+    Wide<float, W> p[8] = {x.v.x, x.v.y, x.v.z, x.inverse_mass, x.w.x, x.w.y, x.w.z, x.drift_x};
     scatter8<W>(floats_of(s), place, 2, 0, p);
 }
 template <int W>
 LENDULET_FORCE_INLINE SymMat3T<Wide<float, W>> load_inverse_inertia_at(const BodyInertia* s, const int32_t* place) {
     Wide<float, W> p[8];
     gather8<W>(floats_of(s), place, 1, 0, p);
+    return {p[0], p[1], p[2], p[3], p[4], p[5]};
+}
+// With how far the last drift moved the body, see BodyState::drift_x.
+template <int W>
+LENDULET_FORCE_INLINE SymMat3T<Wide<float, W>> load_inverse_inertia_at(const BodyInertia* s, const int32_t* place,
+                                                                       const WideVelocity<Wide<float, W>>& x,
+                                                                       Vec3T<Wide<float, W>>& drift) {
+    Wide<float, W> p[8];
+    gather8<W>(floats_of(s), place, 1, 0, p);
+    drift = {x.drift_x, p[6], p[7]};
     return {p[0], p[1], p[2], p[3], p[4], p[5]};
 }
 template <int W>
@@ -278,6 +290,7 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
         c.p[j].impulse = head[4 + j];
     }
     c.shift = zero;
+    c.overdue = zero_vector<F>();
     if constexpr (P > 1) c.turn.shift[0] = c.turn.shift[1] = zero;
     prepare_start<W, P>(c, bodies, body_a, body_b);
     WideVelocity<F> A = load_velocity_at<W>(bodies.state.data(), c.a),
@@ -422,8 +435,16 @@ LENDULET_FORCE_INLINE void sweep_normals(ContactRow<W, P>& c, const WideVelocity
     }
 }
 
-// Adds impulses of the points along n to the bodies.
+// All that the row holds, on B.
 template <int W, int P>
+LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> held_impulse(const ContactRow<W, P>& c, Vec3T<Wide<float, W>> t2) {
+    Wide<float, W> pressed = c.p[0].impulse;
+    for (int j = 1; j < P; ++j) pressed = pressed + c.p[j].impulse;
+    return pressed * c.n + (c.friction.tangent[0] * c.t1 + c.friction.tangent[1] * t2);
+}
+
+// Adds impulses of the points along n to the bodies, and what is overdue.
+template <int W, int P, bool overdue>
 LENDULET_FORCE_INLINE void apply_normals(const ContactRow<W, P>& c, WideVelocity<Wide<float, W>>& A,
                                          WideVelocity<Wide<float, W>>& B, const SymMat3T<Wide<float, W>>& IA,
                                          const SymMat3T<Wide<float, W>>& IB, Vec3T<Wide<float, W>> t2,
@@ -445,6 +466,11 @@ LENDULET_FORCE_INLINE void apply_normals(const ContactRow<W, P>& c, WideVelocity
         turn_a = total * c.lever_a;
         turn_b = total * c.lever_b;
     }
+    if constexpr (overdue) {
+        Vec3T<F> share = c.follow * c.overdue;
+        turn_a = turn_a - share;
+        turn_b = turn_b + (c.overdue - share);
+    }
     Vec3T<F> push = total * c.n;
     B.v = B.v + B.inverse_mass * push;
     B.w = B.w + IB * turn_b;
@@ -459,30 +485,34 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
                                         bool fixed_a) {
     using F = Wide<float, W>;
     BodyState* states = bodies.state;
+    Vec3T<F> drift_a = zero_vector<F>(), drift_b;
     WideVelocity<F> A{}, B = load_velocity_at<W>(states, c.b);
-    SymMat3T<F> IA{}, IB = load_inverse_inertia_at<W>(bodies.inertia, c.b);
+    SymMat3T<F> IA{}, IB = load_inverse_inertia_at<W>(bodies.inertia, c.b, B, drift_b);
     if (!fixed_a) {
         A = load_velocity_at<W>(states, c.a);
-        IA = load_inverse_inertia_at<W>(bodies.inertia, c.a);
+        IA = load_inverse_inertia_at<W>(bodies.inertia, c.a, A, drift_a);
     }
     Vec3T<F> t2 = cross(c.n, c.t1), linear, angular;
     F change[P];
     if constexpr (pass == Pass::warm_start) {
+        MovedArms<F> now{c.ra, c.rb, c.start_slip};
+        if (k.moved) now = update_displacement<W, P>(c, states, t2);
         for (int j = 0; j < P; ++j) change[j] = c.p[j].impulse;
-        apply_normals<W, P>(c, A, B, IA, IB, t2, change);
+        apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);
         linear = c.friction.tangent[0] * c.t1 + c.friction.tangent[1] * t2;
         angular = zero_vector<F>();
         if constexpr (P > 1) angular = c.friction.twist * c.n;
-        B.w = B.w + IB * (cross(c.rb, linear) + angular);
-        A.w = A.w - IA * (cross(c.ra, linear) + angular);
+        B.w = B.w + IB * (cross(now.rb, linear) + angular);
+        A.w = A.w - IA * (cross(now.ra, linear) + angular);
     } else if constexpr (pass == Pass::solve) {
         if (k.moved) update_displacement<W, P>(c, states, t2);
         sweep_normals<W, P, true>(c, A, B, t2, k, change);
-        apply_normals<W, P>(c, A, B, IA, IB, t2, change);
+        apply_normals<W, P, true>(c, A, B, IA, IB, t2, change);
     } else {
+        if (!fixed_a) c.overdue = cross(held_impulse<W, P>(c, t2), drift_b - drift_a);
         MovedArms<F> now = update_displacement<W, P>(c, states, t2);
         sweep_normals<W, P, false>(c, A, B, t2, k, change);
-        apply_normals<W, P>(c, A, B, IA, IB, t2, change);
+        apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);
         Vec3T<F> slip = (now.start_slip + (B.v - A.v)) + (cross(B.w, now.rb) - cross(A.w, now.ra)), spin{};
         if constexpr (P > 1) spin = c.turn.start_spin + (B.w - A.w);
         solve_friction<W, P>(c, t2, slip, spin, linear, angular);

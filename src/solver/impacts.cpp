@@ -14,6 +14,7 @@ void add(float* p, Vec3 v) { p[0] += v.x, p[1] += v.y, p[2] += v.z; }
 
 struct Side {
     BodyState* state;
+    BodyInertia* inertia;
     BodyBlock* block;
     int at;  // of the body in its block
     SymMat3 inverse_inertia;
@@ -21,9 +22,10 @@ struct Side {
 
     Side(SolverBodies& bodies, int32_t i)
         : state(&bodies.state[static_cast<size_t>(i)]),
+          inertia(&bodies.inertia[static_cast<size_t>(i)]),
           block(&bodies.blocks[static_cast<size_t>(i / block_bodies)]),
           at(i % block_bodies) {
-        const float* m = bodies.inertia[static_cast<size_t>(i)].inverse;
+        const float* m = inertia->inverse;
         inverse_inertia = {m[0], m[1], m[2], m[3], m[4], m[5]};
         const BodyStart& start = bodies.start[static_cast<size_t>(i)];
         v = load(start.v) + load(state->v);
@@ -31,10 +33,8 @@ struct Side {
     }
     Quat rotation() const { return {state->dq[0], state->dq[1], state->dq[2], state->dq[3]}; }
     bool movable() const { return state->inverse_mass > 0.0f; }
-    Vec3 acceleration() const {
-        const BodyBlock::Lanes* a = block->acceleration;
-        return movable() ? Vec3{a[0][at], a[1][at], a[2][at]} : Vec3{};
-    }
+    Vec3 acceleration() const { return movable() ? lanes(block->acceleration) : Vec3{}; }
+    Vec3 lanes(const BodyBlock::Lanes* p) const { return {p[0][at], p[1][at], p[2][at]}; }
     void add_lanes(BodyBlock::Lanes* p, Vec3 d) const { p[0][at] += d.x, p[1][at] += d.y, p[2][at] += d.z; }
     Vec3 velocity() const { return v + cross(w, arm); }
     // T^-1(u), thesis 3.3.2: how much the point's velocity along u changes per unit impulse.
@@ -42,9 +42,21 @@ struct Side {
         Vec3 r = cross(arm, u);
         return state->inverse_mass + dot(r, inverse_inertia * r);
     }
+    // What the relax pass changed goes into L by the inertia that it saw, before the body turns.
+    void settle_changes() {
+        const BodyBlock::Lanes* q0 = block->q0;
+        const Quat q = Quat{state->dq[0], state->dq[1], state->dq[2], state->dq[3]} *
+                       Quat{q0[0][at], q0[1][at], q0[2][at], q0[3][at]};
+        const Vec3 dw = load(state->w) - lanes(block->w_ref);
+        const Vec3 dL = rotate(q, multiply(lanes(block->inertia), rotate_inverse(q, dw)));
+        add_lanes(block->L, dL);
+        add_lanes(block->dL, dL);
+        for (int k = 0; k < 3; ++k) block->w_ref[k][at] = state->w[k];
+    }
     // The impulse acts after `time`: the body is moved so that from then on it is where the new velocity leads.
-    void apply(Vec3 impulse, float time) {
+    void apply(Vec3 impulse, float time, bool first) {
         if (!movable()) return;
+        if (!first) settle_changes();
         Vec3 dv = state->inverse_mass * impulse, dL = cross(arm, impulse), dw = inverse_inertia * dL;
         v += dv;
         w += dw;
@@ -56,11 +68,25 @@ struct Side {
         add_lanes(block->w_ref, dw);
         add_lanes(block->L_start, dL);
         add_lanes(block->L, dL);
-        add(state->dp, -time * dv);
+        const Vec3 shift = -time * dv;
+        add(state->dp, shift);
+        // What contacts hold and the kick will repeat acts at other arms now.
+        if (!first && block->joints[at] == 0.0f) {
+            const Vec3 held = lanes(block->dv) + (load(state->v) - lanes(block->v_ref));
+            add_lanes(block->dL, (-1.0f / state->inverse_mass) * cross(shift, held));
+        }
         Vec3 turn = (-0.5f * time) * dw;
         Quat q = rotation();
         Quat d = normalize(Quat{turn.x, turn.y, turn.z, 1.0f} * q);
         state->dq[0] = d.x, state->dq[1] = d.y, state->dq[2] = d.z, state->dq[3] = d.w;
+        // What changes w from here on is put into L by the inertia of this orientation.
+        const BodyBlock::Lanes* q0 = block->q0;
+        const Quat now = d * Quat{q0[0][at], q0[1][at], q0[2][at], q0[3][at]};
+        inverse_inertia =
+            rotate_diagonal(rotation_matrix<float>(QuatT<float>(now), 1.0f), lanes(block->inverse_inertia));
+        const SymMat3& m = inverse_inertia;
+        const float inverse[6] = {m.xx, m.yy, m.zz, m.xy, m.xz, m.yz};
+        for (int i = 0; i < 6; ++i) inertia->inverse[i] = inverse[i];
     }
 };
 
@@ -123,8 +149,8 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
         float lost = 0.5f * (1.0f - r.restitution) * speed * normal_impulse;
         impulse -= minimum(friction, elastic_limit(a, b, n, u, normal_impulse, slide, lost)) * u;
     }
-    a.apply(-impulse, time);
-    b.apply(impulse, time);
+    a.apply(-impulse, time, k.first);
+    b.apply(impulse, time, k.first);
     return true;
 }
 

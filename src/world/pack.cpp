@@ -196,8 +196,11 @@ void pack_contacts(WorldData& world) {
         return c;
     };
     auto place_of = [&](uint32_t slot) { return world.bodies.info[slot].solver_index; };
-    auto tie = [&](int32_t body) { world.solver_bodies.motion[static_cast<size_t>(body)].free = 0.0f; };
-    for (size_t i = 0; i < world.touched; ++i) tie(place_of(world.loaded[i]));
+    auto tie = [&](int32_t body, float free) { world.solver_bodies.motion[static_cast<size_t>(body)].free = free; };
+    for (size_t i = 0; i < world.touched; ++i) {
+        const uint32_t slot = world.loaded[i];
+        tie(place_of(slot), world.island_loads[slot].meets_moving ? -1.0f : 0.0f);
+    }
     const size_t count = world.active.size();
     for (size_t i = 0; i < count; ++i) {
         if (i + prefetch_distance < count) prefetch(&world.records[world.active[i + prefetch_distance]]);
@@ -205,7 +208,7 @@ void pack_contacts(WorldData& world) {
         ContactRecord& r = world.records[world.active[i]];
         r.body_a = place_of(bodies.a);
         r.body_b = place_of(bodies.b);
-        if (bodies.fixed_a) tie(r.body_a);
+        if (bodies.fixed_a) tie(r.body_a, 0.0f);
         ++counts[part_of(r)];
     }
     int first = 0;

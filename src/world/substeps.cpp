@@ -206,6 +206,7 @@ void choose_substeps(WorldData& world, float dt) {
         world.active_bodies.push_back(bodies);
         const ContactRecord& r = world.records[i];
         const bool both = !bodies.fixed_a && takes_part(world, a);
+        if (both) loads[a].meets_moving = loads[b].meets_moving = true;
         IslandLoad& island = loads[both ? join(world, a, b) : root(world.load_parent, b)];
         ++island.contacts;
         island.tied |= !both && world.bodies.info[a].type == BodyType::kinematic && moves(world, a);

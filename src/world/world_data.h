@@ -50,6 +50,7 @@ struct alignas(64) IslandLoad {
     uint8_t before = 0;                     // class in the step before
     uint8_t waited = 0;                     // steps since when fewer substeps would do
     uint8_t substeps = 0;                   // class
+    bool meets_moving = false;              // has a contact with another dynamic body
     bool tied = false;  // to other joints or a kinematic body in motion: takes the setting's substeps
     bool decided = false;
     // Of the body itself.
