@@ -99,6 +99,7 @@ private:
     using Pass = void (*SolverKernels::*)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int, int);
     void pass_tile(int tile, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
     void pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
+
     ColourSchedule schedule_;
     Array<uint32_t> bouncing_;  // records that can bounce
     const ContactExtra* extras_ = nullptr;
