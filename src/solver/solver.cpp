@@ -118,8 +118,9 @@ void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joi
     joints_.prepare(tasks, bodies, joints, contacts, reuse);
 }
 
-// A tile is relaxed last and solved first, so that it is gone through at one go from one substep to the next; what lies
-// between tiles is solved after all tiles and relaxed before them.
+// In every pass what lies between tiles comes before what lies within them; so contacts with what is not moved, which
+// are the last of their tile, come last of all. A tile's relax pass therefore stands before the next substep's kick,
+// and its solve before the drift, each with no barrier between.
 void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
                    BodyRange range) {
     if (range.begin >= range.end) return;
@@ -133,7 +134,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
         k.last = substep == settings.substeps - 1;
         k.repeat_scale = substep == 1 ? 2.0f : 1.0f;  // the first substep began with half a kick
         k.end_scale = settings.substeps > 1 ? 0.5f : 1.0f;
-        // Impacts look at all bodies at once, and so do joints and the first warm start.
+        // Impacts look at all bodies at once, which the relax pass must have left.
         bool relaxed = k.first;
         if (!bouncing_.empty()) {
             if (!relaxed)

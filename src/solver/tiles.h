@@ -1,6 +1,6 @@
-// How a range of packed bodies is cut into tiles that fit into the second-level cache with their constraints (about 1.6
-// kB a body with three contacts). One thread takes a tile through all passes that need nothing from other tiles, so
-// that rows are fetched from farther away once a substep and not once a pass.
+// How a range of packed bodies is cut into tiles that about fit into the second-level cache with their constraints (1.6
+// kB a body with three contacts). One thread takes a tile through all that needs nothing from other tiles, from loop to
+// loop the same one if it comes in time: few barriers, and few lines that go from core to core.
 //
 // Where tiles end depends on the bodies alone, never on the number of workers: results must not show it.
 #pragma once
