@@ -73,6 +73,51 @@ TEST(Continuous, NothingPassesThroughWhatIsMoved) {
     EXPECT_EQ(escaped, 0) << "of " << count;
 }
 
+// A turning paddle and fast balls between walls: how obstacles are found, through a list of few or through the broad
+// phase, does not show, and nothing passes.
+TEST(Continuous, FewObstaclesAndManyGiveTheSame) {
+    auto build = [](int far_away) {
+        World world = WorldBuilder().no_gravity().sleep(false).bounciness(1.0f).build().value();
+        for (float side : {-1.0f, 1.0f}) {
+            world.add_static_body({.shape = Box{{0.01f, 3.0f, 3.0f}}, .position = {3.0f * side, 0.0f, 0.0f}}).value();
+            world.add_static_body({.shape = Box{{3.0f, 0.01f, 3.0f}}, .position = {0.0f, 3.0f * side, 0.0f}}).value();
+            world.add_static_body({.shape = Box{{3.0f, 3.0f, 0.01f}}, .position = {0.0f, 0.0f, 3.0f * side}}).value();
+        }
+        world
+            .add_rigid_body(
+                {.shape = Box{{2.0f, 0.01f, 2.0f}}, .angular_velocity = {0.0f, 0.0f, 20.0f}, .kinematic = true})
+            .value();
+        for (int i = 0; i < 12; ++i) {
+            const float x = static_cast<float>(i % 4) - 1.5f, z = static_cast<float>(i / 4) - 1.0f;
+            world
+                .add_rigid_body({.shape = Sphere{0.1f},
+                                 .position = {x, i % 2 ? 1.0f : -1.0f, z},
+                                 .velocity = {17.0f * z, 23.0f * x, -11.0f * x}})
+                .value();
+        }
+        for (int i = 0; i < far_away; ++i)
+            world
+                .add_static_body(
+                    {.shape = Box{{0.5f, 0.5f, 0.5f}}, .position = {100.0f + 2.0f * static_cast<float>(i), 0.0f, 0.0f}})
+                .value();
+        return world;
+    };
+    World few = build(0), many = build(60);
+    int stopped = 0;
+    for (int step = 0; step < 120; ++step) {
+        few.update(dt).value();
+        many.update(dt).value();
+        stopped += few.statistics().stopped_bodies;
+        EXPECT_EQ(few.statistics().stopped_bodies, many.statistics().stopped_bodies) << step;
+    }
+    EXPECT_GT(stopped, 0);
+    for (int i = 0; i < few.body_count(); ++i) {
+        const Position a = few.get_static(few.body(i)).position(), b = many.get_static(many.body(i)).position();
+        EXPECT_TRUE(a == b) << i;
+        EXPECT_LT(length(from_origin(a)), 3.1f * 1.74f) << i;
+    }
+}
+
 // Bullets and the bodies they hit: without the flag light thin plates may be passed, with it never.
 TEST(Continuous, BulletsMeetMovingBodies) {
     int escaped = 0;
