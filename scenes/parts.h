@@ -8,6 +8,7 @@ namespace lendulet::scenes {
 
 inline constexpr float light_density = 100.0f;  // kg/m^3, of most scenes' bodies
 inline constexpr Vec3 half_metre{0.5f, 0.5f, 0.5f};
+inline constexpr Vec3 along_x{1.0f, 0.0f, 0.0f}, along_y{0.0f, 1.0f, 0.0f}, along_z{0.0f, 0.0f, 1.0f};
 
 // Adds a body with one collider and returns it, to be changed further before the next one is added.
 SceneBody& add_body(SceneDescription& scene, Shape shape, Position position, float density = light_density);

@@ -18,16 +18,16 @@ td.pass { color: #18702c; } td.fail { color: #a8200d; font-weight: bold; }
 </style>
 )";
 
-std::string number(double value) {
+std::string number_text(double value) {
     if (!std::isfinite(value)) return "not finite";
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", value);
     return text;
 }
 
-std::string cell(double value) { return "<td class=\"n\">" + number(value) + "</td>"; }
+std::string cell(double value) { return "<td class=\"n\">" + number_text(value) + "</td>"; }
 
-std::string table(const Report& report) {
+std::string table_of(const Report& report) {
     std::string
         out =
             "<table>\n<tr><th>case</th><th>quantity</th><th>measured</th><th>exact</th><th>error</th><th>tolerance</th>"
@@ -38,7 +38,7 @@ std::string table(const Report& report) {
         last = row.case_id;
         out += row.pass ? "<tr>" : "<tr class=\"fail\">";
         out += "<td>" + escaped(name) + "</td><td>" + escaped(row.quantity) + "</td>" + cell(row.measured) +
-               cell(row.exact) + cell(row.error) + "<td class=\"n\">" + number(row.tolerance) +
+               cell(row.exact) + cell(row.error) + "<td class=\"n\">" + number_text(row.tolerance) +
                (row.relative ? " of it" : "") + "</td>";
         out += row.pass ? "<td class=\"pass\">passes</td></tr>\n" : "<td class=\"fail\">fails</td></tr>\n";
     }
@@ -55,7 +55,7 @@ std::string report_html(const Report& report, Quality quality) {
                                   : "Quality d60: steps of 1/60 s with the shipping defaults. ";
     out += "Of every figure the worst of several random places. " + std::to_string(report.rows.size()) + " figures, " +
            std::to_string(report.failed()) + " of them outside their tolerance.</p>\n";
-    out += table(report);
+    out += table_of(report);
     if (!report.missing.empty()) {
         out += "<h2>Not run</h2>\n<ul>\n";
         for (const Missing& missing : report.missing)

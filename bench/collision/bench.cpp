@@ -21,9 +21,9 @@ Status check(const CollisionOptions& o) {
     return check_writable(o.csv);
 }
 
-bool is_ours(const Subject& s) { return s.routine().rfind("lendulet", 0) == 0; }
+bool is_ours(const PairSubject& s) { return s.routine().rfind("lendulet", 0) == 0; }
 
-CollisionRow judge(const Subject& subject, const PairSet& set, const std::vector<double>& answers,
+CollisionRow judge(const PairSubject& subject, const PairSet& set, const std::vector<double>& answers,
                    const std::vector<double>& times) {
     CollisionRow row{subject.routine(), set.name, median_of(times), 0.0, 0, is_ours(subject)};
     for (size_t i = 0; i < answers.size(); ++i) {
@@ -36,8 +36,8 @@ CollisionRow judge(const Subject& subject, const PairSet& set, const std::vector
 }
 
 // All that take the set, by turns.
-void measure(const PairSet& set, const Subjects& subjects, int repeats, CollisionRows& rows) {
-    std::vector<Subject*> taking;
+void measure(const PairSet& set, const PairSubjects& subjects, int repeats, CollisionRows& rows) {
+    std::vector<PairSubject*> taking;
     for (const auto& subject : subjects)
         if (subject->takes(set)) subject->load(set), taking.push_back(subject.get());
     std::vector<std::vector<double>> times(taking.size());
@@ -92,7 +92,7 @@ Result<int> bench_collision(const CollisionOptions& options) {
     if (!missing_collision_peers().empty())
         std::printf("Measured without %s, which the build did not find.\n", joined(missing_collision_peers()).c_str());
     std::printf("%-24s %-36s %10s %9s %9s\n", "case", "routine", "ns", "error, m", "failures");
-    Subjects subjects;
+    PairSubjects subjects;
     add_own_subjects(subjects);
     add_bullet_subjects(subjects);
     add_ccd_subjects(subjects);

@@ -11,7 +11,6 @@ namespace lendulet::bench {
 namespace {
 
 using scenes::Random;
-constexpr float margin = 0.02f;
 
 struct Placement {
     Quat rotation_a, rotation_b;
@@ -45,8 +44,8 @@ void measure(const char* name, const Shape& shape_a, const Shape& shape_b, const
             const Placement& p = places[i];
             PairCache cache;
             Manifold out[max_mesh_manifolds];
-            int count =
-                collide({&a, &b, p.rotation_a, p.rotation_b, p.offset, margin}, cache, {}, out, max_mesh_manifolds);
+            int count = collide({&a, &b, p.rotation_a, p.rotation_b, p.offset, contact_margin}, cache, {}, out,
+                                max_mesh_manifolds);
             answers[i] = deepest_of(out, count);
         }
         times.push_back((computing_time() - start) / static_cast<double>(places.size()));
@@ -54,7 +53,7 @@ void measure(const char* name, const Shape& shape_a, const Shape& shape_b, const
     CollisionRow row{"lendulet manifold, single", name, median_of(times), judged ? 0.0 : -1.0, 0, true};
     for (size_t i = 0; judged && i < places.size(); ++i) {
         double truth = nearness_of(a, b, places[i]);
-        if (truth > 0.99 * margin && answers[i] > 1e9) continue;
+        if (truth > 0.99 * contact_margin && answers[i] > 1e9) continue;
         double error = std::abs(truth - answers[i]);
         if (!(error <= 1e-3)) ++row.failures;
         else row.worst_error = std::max(row.worst_error, error);

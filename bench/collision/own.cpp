@@ -11,9 +11,6 @@
 namespace lendulet::bench {
 namespace {
 
-constexpr double failed = std::numeric_limits<double>::quiet_NaN();
-constexpr float margin = 0.02f;
-
 // The set as the engine sees it.
 struct Loaded {
     const PairSet* set = nullptr;
@@ -33,7 +30,7 @@ struct Loaded {
     size_t size() const { return a.size(); }
 };
 
-class Distance : public Subject {
+class Distance : public PairSubject {
 public:
     Distance(SimplexSolver solver, bool warm) : solver_(solver), warm_(warm) {}
     std::string routine() const override {
@@ -75,7 +72,7 @@ double deepest(const Manifold& m) {
 }
 
 // One pair after the other.
-class SingleManifold : public Subject {
+class SingleManifold : public PairSubject {
 public:
     std::string routine() const override { return "lendulet manifold, single"; }
     bool takes(const PairSet& set) const override { return set.overlapping; }
@@ -86,8 +83,8 @@ public:
         for (size_t i = 0; i < data_.size(); ++i) {
             Manifold m;
             const Transform& t = data_.pose[i];
-            int count =
-                collide({&data_.a[i], &data_.b[i], {}, t.rotation, t.translation, margin}, caches_[i], {}, &m, 1);
+            int count = collide({&data_.a[i], &data_.b[i], {}, t.rotation, t.translation, contact_margin}, caches_[i],
+                                {}, &m, 1);
             answers[i] = count == 1 ? deepest(m) : failed;
         }
     }
@@ -97,7 +94,7 @@ private:
     std::vector<PairCache> caches_;
 };
 
-class BatchManifold : public Subject {
+class BatchManifold : public PairSubject {
 public:
     explicit BatchManifold(int width) : kernels_(narrow_kernels(width)) {}
     std::string routine() const override { return "lendulet manifold, width " + std::to_string(kernels_.width); }
@@ -119,7 +116,7 @@ public:
             const int count = total - first < batch_capacity ? total - first : batch_capacity;
             for (int k = 0; k < count; ++k) {
                 lists_->a[k] = 2 * (first + k), lists_->b[k] = 2 * (first + k) + 1;
-                lists_->margin[k] = margin, lists_->feature[k] = 0.0f;
+                lists_->margin[k] = contact_margin, lists_->feature[k] = 0.0f;
             }
             BoxBatch batch = lists_->batch(frames_.data(), count);
             kernels_.collide_boxes(batch);
@@ -139,7 +136,7 @@ private:
         const float rotation[4] = {q.x, q.y, q.z, q.w};
         for (int k = 0; k < 4; ++k) f.rotation[k] = rotation[k];
         for (int k = 0; k < 3; ++k) f.half[k] = component(half, k), f.centre[k] = component(t.translation, k);
-        f.near = margin;
+        f.near = contact_margin;
         f.reach = f.radius = length(half);
     }
     const NarrowKernels& kernels_;
@@ -149,7 +146,7 @@ private:
 
 }  // namespace
 
-void add_own_subjects(Subjects& subjects) {
+void add_own_subjects(PairSubjects& subjects) {
     for (bool warm : {false, true})
         for (SimplexSolver solver : {SimplexSolver::half_space, SimplexSolver::barycentric})
             subjects.push_back(std::make_unique<Distance>(solver, warm));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <ctime>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -29,10 +30,15 @@ struct PairSet {
 // them, far and deep.
 std::vector<PairSet> make_pair_sets(int pairs);
 
+// How far apart shapes may be for a manifold, m.
+inline constexpr float contact_margin = 0.02f;
+// The answer of a routine that says that it has none.
+inline constexpr double failed = std::numeric_limits<double>::quiet_NaN();
+
 // A routine that answers all pairs of a set one after the other.
-class Subject {
+class PairSubject {
 public:
-    virtual ~Subject() = default;
+    virtual ~PairSubject() = default;
     virtual std::string routine() const = 0;
     // Whether it has answers of this kind.
     virtual bool takes(const PairSet& set) const = 0;
@@ -41,15 +47,15 @@ public:
     virtual bool moved() const { return false; }  // answers for the moved poses
     // m; an answer that is off by more has failed.
     virtual double allowed() const { return 1e-3; }
-    // Distances or depths as the truth has them; not a number where it says that it has failed.
+    // Distances or depths as the truth has them, or `failed`.
     virtual void run(std::vector<double>& answers) = 0;
 };
-using Subjects = std::vector<std::unique_ptr<Subject>>;
+using PairSubjects = std::vector<std::unique_ptr<PairSubject>>;
 
-void add_own_subjects(Subjects& subjects);
-void add_bullet_subjects(Subjects& subjects);
-void add_ccd_subjects(Subjects& subjects);
-void add_fcl_subjects(Subjects& subjects);
+void add_own_subjects(PairSubjects& subjects);
+void add_bullet_subjects(PairSubjects& subjects);
+void add_ccd_subjects(PairSubjects& subjects);
+void add_fcl_subjects(PairSubjects& subjects);
 // Peers that the build did not find, by Debian's names.
 std::vector<std::string> missing_collision_peers();
 

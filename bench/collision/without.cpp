@@ -18,14 +18,14 @@ std::vector<std::string> missing_collision_peers() {
 }
 
 #ifndef LENDULET_BENCH_BULLET
-void add_bullet_subjects(Subjects&) {}
+void add_bullet_subjects(PairSubjects&) {}
 std::vector<double> bullet_rays(const RayScene&, int, std::vector<double>&) { return {}; }
 #endif
 #ifndef LENDULET_BENCH_CCD
-void add_ccd_subjects(Subjects&) {}
+void add_ccd_subjects(PairSubjects&) {}
 #endif
 #ifndef LENDULET_BENCH_FCL
-void add_fcl_subjects(Subjects&) {}
+void add_fcl_subjects(PairSubjects&) {}
 #endif
 
 }  // namespace lendulet::bench

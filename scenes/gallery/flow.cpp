@@ -5,7 +5,6 @@
 namespace lendulet::scenes {
 namespace {
 
-constexpr Vec3 along_x{1.0f, 0.0f, 0.0f}, along_z{0.0f, 0.0f, 1.0f};
 constexpr Position middle{0.0f, 2.9f, 0.0f};  // of the hourglass
 constexpr Position hub{0.0f, 3.2f, 0.0f};     // of the wheel of buckets
 

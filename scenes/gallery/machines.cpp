@@ -5,8 +5,6 @@
 namespace lendulet::scenes {
 namespace {
 
-constexpr Vec3 along_x{1.0f, 0.0f, 0.0f}, along_z{0.0f, 0.0f, 1.0f};
-
 // A spur gear about z. Lengths are in modules: the pitch circle has a radius of half the number of teeth.
 constexpr float module = 0.2f, half_thickness = 0.25f;  // m
 

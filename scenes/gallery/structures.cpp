@@ -5,10 +5,8 @@
 namespace lendulet::scenes {
 namespace {
 
-constexpr Vec3 up{0.0f, 1.0f, 0.0f}, along_z{0.0f, 0.0f, 1.0f};
-
 // The rotation about y that turns x towards (x, z).
-Quat facing(float x, float z) { return rotation_about(up, -arc_tangent2(z, x)); }
+Quat facing(float x, float z) { return rotation_about(along_y, -arc_tangent2(z, x)); }
 
 // A round tower of `courses` rings of bricks, each ring turned by half a brick.
 void add_round_tower(SceneDescription& scene, int courses) {
@@ -76,8 +74,8 @@ SceneDescription domino_spiral(int count) {
     // Turning about its lower front edge, fast enough to pass the tipping point.
     constexpr float spin = 3.0f;
     SceneBody& last = scene.bodies.back();
-    last.angular_velocity = spin * cross(up, forward);
-    last.velocity = spin * (half.y * forward + half.x * up);
+    last.angular_velocity = spin * cross(along_y, forward);
+    last.velocity = spin * (half.y * forward + half.x * along_y);
     return scene;
 }
 

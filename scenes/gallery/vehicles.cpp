@@ -5,8 +5,6 @@
 namespace lendulet::scenes {
 namespace {
 
-constexpr Vec3 along_x{1.0f, 0.0f, 0.0f}, along_y{0.0f, 1.0f, 0.0f}, along_z{0.0f, 0.0f, 1.0f};
-
 // A wheel whose axle is along z; its index.
 int add_wheel(SceneDescription& scene, Position at, float radius, float half_width, float density) {
     SceneBody& wheel = add_body(scene, Cylinder{half_width, radius - 0.04f, 0.04f}, at, density);

@@ -6,9 +6,8 @@
 namespace lendulet::scenes {
 namespace {
 
-constexpr Vec3 along_z{0.0f, 0.0f, 1.0f};
 constexpr float unit = 0.03f;  // m: the bars' lengths below are multiples of this
-constexpr float bar_radius = 0.045f, foot_radius = 0.09f, density = 500.0f;
+constexpr float link_radius = 0.045f, foot_radius = 0.09f, part_density = 500.0f;
 constexpr uint32_t group = 1;  // the walker's parts do not meet each other
 
 struct Point {
@@ -43,25 +42,25 @@ Leg leg_at(float angle) {
 class Walker {
 public:
     Walker(SceneDescription& scene, float height) : scene_(scene), origin_{0.0f, height, 0.0f} {
-        SceneBody& chassis = add_body(scene, Box{{0.5f, 0.12f, 1.25f}}, at({0.0f, 14.0f}, 0.0f), density);
+        SceneBody& chassis = add_body(scene, Box{{0.5f, 0.12f, 1.25f}}, at({0.0f, 14.0f}, 0.0f), part_density);
         for (float side : {-38.0f, 38.0f})
-            add_part(chassis, Capsule{1.25f, bar_radius},
+            add_part(chassis, Capsule{1.25f, link_radius},
                      {{side * unit, (-7.8f - 14.0f) * unit, 0.0f}, rotation_about({1.0f, 0.0f, 0.0f}, 0.5f * pi)},
-                     density);
+                     part_density);
         chassis.name = "chassis";
         finish(chassis);
         chassis_ = last_body(scene);
     }
     // The shaft and its cranks at places z with their angles.
     void add_shaft(const float (&places)[6], const float (&angles)[6], float speed) {
-        SceneBody& shaft = add_body(scene_, Capsule{1.25f, 0.06f}, at({0.0f, 0.0f}, 0.0f), 2.0f * density);
+        SceneBody& shaft = add_body(scene_, Capsule{1.25f, 0.06f}, at({0.0f, 0.0f}, 0.0f), 2.0f * part_density);
         shaft.orientation = rotation_about({1.0f, 0.0f, 0.0f}, 0.5f * pi);
         for (int i = 0; i < 6; ++i) {
             SinCos s = sin_cos(angles[i]);
             Vec3 half{7.5f * unit * s.cos, 7.5f * unit * s.sin, places[i]};
             Quat turn = conjugate(shaft.orientation);
             add_part(shaft, Box{{7.5f * unit, 0.05f, 0.05f}},
-                     {rotate(turn, half), turn * rotation_about(along_z, angles[i])}, density);
+                     {rotate(turn, half), turn * rotation_about(along_z, angles[i])}, part_density);
         }
         finish(shaft);
         shaft_ = last_body(scene_);
@@ -74,7 +73,7 @@ public:
         const int upper = bars({{leg.fixed, leg.top}, {leg.top, leg.back}, {leg.back, leg.fixed}}, z);
         const int lower = bars({{leg.knee, leg.shin}, {leg.shin, leg.foot}, {leg.foot, leg.knee}}, z);
         SceneBody& shin = scene_.bodies.back();
-        ColliderDef& foot = add_part(shin, Sphere{foot_radius}, {at(leg.foot, z) - shin.position, {}}, density);
+        ColliderDef& foot = add_part(shin, Sphere{foot_radius}, {at(leg.foot, z) - shin.position, {}}, part_density);
         foot.material.static_friction = 1.0f;
         foot.filter.group = group;
         const int to_top = bars({{leg.crank, leg.top}}, z), to_knee = bars({{leg.crank, leg.knee}}, z);
@@ -103,8 +102,9 @@ private:
         for (const Bar& bar : list) {
             const Vec3 from = at(bar.from, z) - body.position, to = at(bar.to, z) - body.position;
             const float size = length(to - from);
-            add_part(body, Capsule{0.5f * size, bar_radius},
-                     {0.5f * (from + to), rotation_between({0.0f, 1.0f, 0.0f}, (1.0f / size) * (to - from))}, density);
+            add_part(body, Capsule{0.5f * size, link_radius},
+                     {0.5f * (from + to), rotation_between({0.0f, 1.0f, 0.0f}, (1.0f / size) * (to - from))},
+                     part_density);
         }
         finish(body);
         return last_body(scene_);

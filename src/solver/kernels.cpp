@@ -12,10 +12,10 @@ namespace {
 // clang-format off
 constexpr KernelTables<SolverKernels> tables{
     &baseline_kernels_1, &baseline_kernels_4,
-#if defined(LENDULET_FOUR_LANES)
-    nullptr, nullptr,
-#else
+#if defined(LENDULET_EMULATED_LANES)
     &baseline_kernels_8, &baseline_kernels_16,
+#else
+    nullptr, nullptr,
 #endif
 #if defined(__x86_64__) && !defined(LENDULET_FOUR_LANES)
     &avx2_kernels, &avx512_kernels,

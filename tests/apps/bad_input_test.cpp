@@ -10,17 +10,6 @@
 namespace lendulet::test {
 namespace {
 
-void expect_refused(const std::vector<std::string>& arguments, const std::string& part) {
-    Outcome outcome = lendulet(arguments);
-    std::string line;
-    for (const std::string& a : arguments) line += a + ' ';
-    EXPECT_EQ(outcome.exit_code, 2) << line << outcome.err;
-    EXPECT_EQ(outcome.out, "") << line;
-    EXPECT_EQ(outcome.err.rfind("lendulet: ", 0), 0u) << line << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << line << outcome.err;
-    EXPECT_NE(outcome.err.find(part), std::string::npos) << line << outcome.err;
-}
-
 std::string file_with(const std::string& name, const std::string& content) {
     std::string path = scratch(name);
     std::ofstream(path, std::ios::binary) << content;

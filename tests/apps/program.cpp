@@ -1,11 +1,13 @@
 #include "program.h"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -15,11 +17,6 @@
 namespace lendulet::test {
 
 namespace {
-
-std::string slurp(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 struct ScratchDirectory {
     std::filesystem::path path = std::filesystem::temp_directory_path() / ("lendulet_test_" + std::to_string(getpid()));
@@ -60,10 +57,26 @@ Outcome lendulet(const std::vector<std::string>& arguments, int interrupt_after_
     wait4(child, &status, 0, &usage);
     Outcome outcome;
     outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    outcome.out = slurp(out_path);
-    outcome.err = slurp(err_path);
+    outcome.out = content(out_path);
+    outcome.err = content(err_path);
     outcome.peak_kilobytes = usage.ru_maxrss;
     return outcome;
+}
+
+std::string content(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void expect_refused(const std::vector<std::string>& arguments, const std::string& part) {
+    Outcome outcome = lendulet(arguments);
+    std::string line;
+    for (const std::string& a : arguments) line += a + ' ';
+    EXPECT_EQ(outcome.exit_code, 2) << line << outcome.err;
+    EXPECT_EQ(outcome.out, "") << line;
+    EXPECT_EQ(outcome.err.rfind("lendulet: ", 0), 0u) << line << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << line << outcome.err;
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << line << outcome.err;
 }
 
 }  // namespace lendulet::test

@@ -18,5 +18,10 @@ Outcome lendulet(const std::vector<std::string>& arguments, int interrupt_after_
 
 // A path in a directory of this process' own, which is removed at its end.
 std::string scratch(const std::string& name);
+// What a file holds; nothing where there is none.
+std::string content(const std::string& path);
+
+// Expects exit code 2, nothing on standard output and one sentence with `part` in it on standard error.
+void expect_refused(const std::vector<std::string>& arguments, const std::string& part);
 
 }  // namespace lendulet::test

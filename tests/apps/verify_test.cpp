@@ -13,11 +13,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string content(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 TEST(Verify, WritesJsonOfTheCasesAskedFor) {
     Outcome outcome = lendulet({"verify", "--cases", "A12,A08,A35", "--json", "-"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

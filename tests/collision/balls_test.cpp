@@ -5,7 +5,6 @@ using namespace pairs;
 
 namespace {
 
-const Quat identity{};
 const Quat along_x = rotation_about({0.0f, 0.0f, 1.0f}, 0.5f * pi);  // turns the axis y to -x
 
 void expect_point(const Manifold& m, Vec3 position, float separation, Vec3 normal) {

@@ -9,8 +9,6 @@ using namespace pairs;
 
 namespace {
 
-const Quat identity{};
-
 oracle::Body body_of(Vec3 half, Quat q, Vec3 at) {
     return oracle::moved(oracle::make_box({half.x, half.y, half.z}),
                          oracle::make_pose(q.x, q.y, q.z, q.w, {at.x, at.y, at.z}));

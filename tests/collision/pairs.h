@@ -14,6 +14,8 @@ namespace pairs {
 
 using namespace lendulet;
 
+inline const Quat identity{};
+
 // A shape with its geometry; keeps what the geometry points into.
 struct Solid {
     Shape shape;

@@ -7,7 +7,7 @@
 namespace lendulet::verify {
 namespace {
 
-using testing::dt;
+using test::dt;
 
 TEST(Continuous, AtAnyStep) {
     const Frame here{};
@@ -35,7 +35,7 @@ TEST(Continuous, NothingStopsWhatPassesBeside) {
 
 TEST(Continuous, SlidingOverAMeshIsUndisturbed) {
     World world = WorldBuilder().no_friction().sleep(false).build().value();
-    world.add_static_body({.shape = testing::wavy_ground(60, 30.0f, 0.0f)}).value();
+    world.add_static_body({.shape = test::wavy_ground(60, 30.0f, 0.0f)}).value();
     BodyId box = world.add_rigid_body({.shape = Box{{0.1f, 0.05f, 0.1f}}, .position = {-25.0f, 0.05f, 0.3f}}).value();
     advance(world, 30, dt);
     world.get(box).set_velocity({40.0f, 0.0f, 0.0f}).value();
@@ -193,7 +193,7 @@ TEST(Continuous, IsDeterministicAndIdleWhereNothingIsFast) {
             .add_static_body(
                 {.shape = wall_shape(Wall::closed_mesh, {0.0005f, 6.0f, 6.0f}), .position = {3.0f, 0.0f, 0.0f}})
             .value();
-        testing::add_floor(world);
+        test::add_floor(world);
         for (int i = 0; i < 60; ++i) {
             auto f = static_cast<float>(i);
             world
@@ -212,8 +212,8 @@ TEST(Continuous, IsDeterministicAndIdleWhereNothingIsFast) {
         EXPECT_EQ(world.hash(), hash) << workers;
     }
     World calm = WorldBuilder().build().value();
-    testing::add_floor(calm);
-    testing::add_stack(calm, 0.0f, 5);
+    test::add_floor(calm);
+    test::add_stack(calm, 0.0f, 5);
     for (int i = 0; i < 60; ++i) {
         calm.update(dt).value();
         EXPECT_EQ(calm.statistics().stopped_bodies, 0);

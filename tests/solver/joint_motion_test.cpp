@@ -5,7 +5,7 @@
 
 #include "joint_rig.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 constexpr double g = 9.81;
@@ -213,4 +213,4 @@ TEST(JointMotion, NetSagsLittle) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

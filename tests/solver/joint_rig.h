@@ -8,7 +8,7 @@
 #include "lendulet/math.h"
 #include "solver/solver.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 
 struct RigBody {
     Position position;
@@ -231,4 +231,4 @@ private:
     std::vector<JointRecord> records_;
 };
 
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

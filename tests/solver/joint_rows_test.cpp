@@ -5,7 +5,7 @@
 
 #include "joint_rig.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 constexpr JointClass all_classes[] = {JointClass::ball,          JointClass::limited_ball, JointClass::hinge,
@@ -312,4 +312,4 @@ TEST(JointRows, ManyEqualAndContradictoryJointsStayFinite) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

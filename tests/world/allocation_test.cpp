@@ -27,7 +27,7 @@ void operator delete[](void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 struct Counter {
@@ -173,4 +173,4 @@ TEST(AllocatorHooks, NeedBothFunctions) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

@@ -6,7 +6,7 @@
 
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 TEST(Api, HelloWorldBouncesAndSettles) {
@@ -231,4 +231,4 @@ TEST(Names, OfEveryChoiceLeadBackToIt) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

@@ -3,7 +3,7 @@
 
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 constexpr Vec3 half{0.5f, 1.0f, 1.5f};  // of a box of 6 m^3
@@ -214,4 +214,4 @@ TEST(Body, GivenMassPropertiesWin) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

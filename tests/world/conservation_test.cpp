@@ -5,11 +5,12 @@
 #include <cmath>
 
 #include "lendulet/lendulet.h"
+#include "world/support.h"
 
 namespace lendulet {
 namespace {
 
-constexpr float dt = 1.0f / 60.0f;
+using test::dt;
 
 World empty_space() { return WorldBuilder{}.no_gravity().build().value(); }
 

@@ -6,7 +6,7 @@
 
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 TEST(Contacts, ImpulsesOfARestingBoxCarryItsWeight) {
@@ -213,4 +213,4 @@ INSTANTIATE_TEST_SUITE_P(Structures, Queries,
                                            BroadPhaseType::wide_tree));
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

@@ -5,11 +5,12 @@
 #include <limits>
 
 #include "lendulet/lendulet.h"
+#include "world/support.h"
 
 namespace lendulet {
 namespace {
 
-constexpr float dt = 1.0f / 60.0f;
+using test::dt;
 
 // A ball of 1 kg whose centre a distance joint ties to a hook at the origin.
 struct Tied {

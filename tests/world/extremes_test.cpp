@@ -4,7 +4,7 @@
 #include "scale.h"
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 TEST(Extremes, SpeedsAreCutAndCounted) {
@@ -177,4 +177,4 @@ TEST(Extremes, HugeBodiesKeepTheirAngularMomentum) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

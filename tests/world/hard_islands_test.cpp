@@ -3,7 +3,7 @@
 
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 World awake_world() { return WorldBuilder{}.sleep(false).build().value(); }
@@ -53,4 +53,4 @@ TEST(HardIslands, ColumnsAndHeavyOnLightTakeMore) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

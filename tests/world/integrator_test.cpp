@@ -7,7 +7,7 @@
 
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 constexpr Integrator integrators[] = {Integrator::explicit_euler, Integrator::symplectic_euler,
@@ -156,4 +156,4 @@ TEST(Integrators, Table) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

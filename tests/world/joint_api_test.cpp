@@ -5,12 +5,13 @@
 #include <limits>
 
 #include "lendulet/lendulet.h"
+#include "world/support.h"
 
 namespace lendulet {
 namespace {
 
 constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
-constexpr float dt = 1.0f / 60.0f;
+using test::dt;
 
 struct Pair {
     World world = WorldBuilder{}.down_gravity(9.81f).build().value();

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "lendulet/lendulet.h"
+#include "world/support.h"
 
 namespace lendulet {
 namespace {
 
-constexpr float dt = 1.0f / 60.0f;
+using test::dt;
 
 struct Chain {
     World world;

@@ -10,7 +10,7 @@
 #include "world/narrow/kernels.h"
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 using scenes::Random;
@@ -181,4 +181,4 @@ TEST(NarrowRecords, NewPairsInheritNothing) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

@@ -9,7 +9,7 @@
 namespace lendulet {
 namespace {
 
-using namespace testing;
+using namespace test;
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();

@@ -11,7 +11,7 @@
 namespace lendulet {
 namespace {
 
-using namespace testing;
+using namespace test;
 
 struct Random {
     uint32_t state;

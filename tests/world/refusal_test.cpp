@@ -7,7 +7,7 @@
 
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -277,4 +277,4 @@ TEST(Refusals, OfSettings) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

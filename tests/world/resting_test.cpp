@@ -7,7 +7,7 @@
 
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 bool all_asleep(const World& world) {
@@ -369,4 +369,4 @@ TEST(Rest, AllBodiesCanGoInOneFrame) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

@@ -6,11 +6,12 @@
 #include <limits>
 
 #include "lendulet/lendulet.h"
+#include "world/support.h"
 
 namespace lendulet {
 namespace {
 
-constexpr float dt = 1.0f / 60.0f;
+using test::dt;
 
 World heap(int width, int workers, bool rolls = true) {
     World world = WorldBuilder{}.down_gravity(9.81f).width(width).workers(workers).build().value();

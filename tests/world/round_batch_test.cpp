@@ -9,7 +9,7 @@
 #include "scenes/random.h"
 #include "world/narrow/kernels.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 using scenes::Random;
@@ -156,4 +156,4 @@ INSTANTIATE_TEST_SUITE_P(All, RoundBatches,
                          ::testing::Values(Mix::balls, Mix::capsules, Mix::balls_and_capsules, Mix::boxes_and_balls));
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

@@ -5,11 +5,12 @@
 #include <limits>
 
 #include "lendulet/lendulet.h"
+#include "world/support.h"
 
 namespace lendulet {
 namespace {
 
-constexpr float dt = 1.0f / 60.0f;
+using test::dt;
 constexpr float infinite = std::numeric_limits<float>::infinity();
 constexpr Limit locked{0.0f, 0.0f};
 

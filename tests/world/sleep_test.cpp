@@ -5,7 +5,7 @@
 
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 // A stack of five cubes on a floor; steps until all of it sleeps. Fails where that takes more than 5 s.
@@ -214,4 +214,4 @@ TEST(Sleep, RunsAreEqualToTheLastBit) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

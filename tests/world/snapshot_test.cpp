@@ -8,7 +8,7 @@
 #include "scenes/scene.h"
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 void step(Scene& scene, int count) {
@@ -245,4 +245,4 @@ TEST(Snapshot, IsSmall) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

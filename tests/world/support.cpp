@@ -1,6 +1,6 @@
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 
 void add_mixed_pile(World& world, int side) {
     world.add_static_body({.shape = wavy_ground(8, 12.0f, 0.1f), .name = "ground"}).value();
@@ -25,4 +25,4 @@ void add_mixed_pile(World& world, int side) {
     }
 }
 
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

@@ -6,7 +6,7 @@
 
 #include "lendulet/lendulet.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 
 inline constexpr float dt = 1.0f / 60.0f;
 
@@ -74,4 +74,4 @@ inline TriangleMesh wavy_ground(int n, float half_size, float height) {
 // Boxes, balls, capsules and octahedra above a mesh, some joined by ball joints and hinges.
 void add_mixed_pile(World& world, int side);
 
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

@@ -7,7 +7,7 @@
 
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 constexpr float reach = 6.0f;  // of all grounds along x; along z from -2 to 2
@@ -326,4 +326,4 @@ TEST(MaterialTables, OutlastSnapshots) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

@@ -6,7 +6,7 @@
 
 #include "world/support.h"
 
-namespace lendulet::testing {
+namespace lendulet::test {
 namespace {
 
 using Run = void (*)(void* context, int begin, int end, int worker);
@@ -91,4 +91,4 @@ TEST(Threads, ReadersAgree) {
 }
 
 }  // namespace
-}  // namespace lendulet::testing
+}  // namespace lendulet::test

@@ -7,7 +7,7 @@
 namespace lendulet::verify {
 namespace {
 
-constexpr double h0 = 1.0, radius = 0.5;
+constexpr double h0 = 1.0, bouncer_radius = 0.5;
 
 struct Drop {
     World world;
@@ -19,7 +19,7 @@ struct Drop {
             add_body(world, frame,
                      {.shape = Sphere{0.5f}, .position = {0.0f, 1.5f, 0.0f}, .restitution = restitution, .mass = 1.0f});
     }
-    double height() const { return place(world, frame, ball).y - radius; }
+    double height() const { return place(world, frame, ball).y - bouncer_radius; }
     double speed() const { return velocity(world, frame, ball).y; }
     // The height at which it would turn if it flew on: the apex, also where that lies between two steps.
     double apex() const { return height() + speed() * speed() / (2.0 * standard_gravity); }

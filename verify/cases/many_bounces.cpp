@@ -8,7 +8,7 @@
 namespace lendulet::verify {
 namespace {
 
-constexpr float radius = 0.1f, mass = 10.0f;
+constexpr float marble_radius = 0.1f, mass = 10.0f;
 
 World elastic_world(const Setting& s, float restitution) {
     World world = s.builder().no_friction().bounciness(restitution).build().value();
@@ -17,7 +17,7 @@ World elastic_world(const Setting& s, float restitution) {
 }
 
 BodyId add_ball(World& world, const Frame& frame, Vec3 where) {
-    return add_body(world, frame, {.shape = Sphere{radius}, .position = at(where), .mass = mass});
+    return add_body(world, frame, {.shape = Sphere{marble_radius}, .position = at(where), .mass = mass});
 }
 
 double mean_squared_energy_error(World& world, const Setting& s, double seconds, float step, Curve* curve = nullptr) {

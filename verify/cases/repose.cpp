@@ -7,12 +7,12 @@
 namespace lendulet::verify {
 namespace {
 
-constexpr float radius = 0.5f;
+constexpr float roller_radius = 0.5f;
 
 // A body of moment beta m r^2 that rolls against b N slows by b g / (r (1 + beta)), until it stands.
 void rolls_out(const Setting& s, Figures& out, const char* name, const Shape& shape, Quat turned, double beta) {
     constexpr float arm = 0.02f, v0 = 2.0f;
-    const double slowing = arm * standard_gravity / (radius * (1.0 + beta));
+    const double slowing = arm * standard_gravity / (roller_radius * (1.0 + beta));
     Quantity &rate = out.quantity(std::string(name) + ": slowing by rolling friction, m/s^2", relative(2e-3)),
              &way = out.quantity(std::string(name) + ": way until it stands, m", relative(2e-3)),
              &rest = out.quantity(std::string(name) + ": speed after that, m/s", within(1e-4));
@@ -21,10 +21,10 @@ void rolls_out(const Setting& s, Figures& out, const char* name, const Shape& sh
               {.shape = Box{{40.0f, 0.5f, 10.0f}}, .position = {0.0f, -0.5f, 0.0f}, .rolling_friction = arm});
     BodyId body = add_body(world, s.frame,
                            {.shape = shape,
-                            .position = {0.0f, radius, 0.0f},
+                            .position = {0.0f, roller_radius, 0.0f},
                             .orientation = turned,
                             .velocity = {v0, 0.0f, 0.0f},
-                            .angular_velocity = {0.0f, 0.0f, -v0 / radius},
+                            .angular_velocity = {0.0f, 0.0f, -v0 / roller_radius},
                             .rolling_friction = arm});
     double start = place(world, s.frame, body).x;
     advance(world, s.steps(1.0), s.dt());
@@ -50,14 +50,15 @@ void spins_out(const Setting& s, Figures& out) {
     add_fixed(world, s.frame,
               {.shape = Box{{5.0f, 0.5f, 5.0f}}, .position = {0.0f, -0.5f, 0.0f}, .spinning_friction = arm});
     BodyId ball = add_body(world, s.frame,
-                           {.shape = Sphere{radius},
-                            .position = {0.0f, radius, 0.0f},
+                           {.shape = Sphere{roller_radius},
+                            .position = {0.0f, roller_radius, 0.0f},
                             .angular_velocity = {0.0f, w0, 0.0f},
                             .spinning_friction = arm});
     advance(world, s.steps(1.0), s.dt());
     double early = spin(world, s.frame, ball).y;
     advance(world, s.steps(4.0), s.dt());
-    rate.add((early - spin(world, s.frame, ball).y) / 4.0, 2.5 * arm * standard_gravity / (radius * radius));
+    rate.add((early - spin(world, s.frame, ball).y) / 4.0,
+             2.5 * arm * standard_gravity / (roller_radius * roller_radius));
     Vec3d at = place(world, s.frame, ball);
     place_kept.add(std::hypot(at.x, at.z));
 }
@@ -65,7 +66,7 @@ void spins_out(const Setting& s, Figures& out) {
 // On a slope a ball stays where tan(slope) is less than b / r, and rolls where it is more.
 void stays_on_slope(const Setting& s, Figures& out) {
     constexpr double slope = 0.1;  // rad
-    const double arm = radius * std::tan(slope);
+    const double arm = roller_radius * std::tan(slope);
     Quantity &stays = out.quantity("slope: creep below the threshold, m/s", within(1e-5)),
              &rolls = out.quantity("slope: acceleration above it, m/s^2", relative(5e-3));
     for (double share : {1.05, 0.8}) {
@@ -74,8 +75,9 @@ void stays_on_slope(const Setting& s, Figures& out) {
         const float given = static_cast<float>(share * arm);
         add_fixed(world, s.frame,
                   {.shape = Box{{40.0f, 0.5f, 5.0f}}, .position = {0.0f, -0.5f, 0.0f}, .rolling_friction = given});
-        BodyId ball = add_body(world, s.frame,
-                               {.shape = Sphere{radius}, .position = {0.0f, radius, 0.0f}, .rolling_friction = given});
+        BodyId ball = add_body(
+            world, s.frame,
+            {.shape = Sphere{roller_radius}, .position = {0.0f, roller_radius, 0.0f}, .rolling_friction = given});
         advance(world, s.steps(1.0), s.dt());
         double x = place(world, s.frame, ball).x, v = velocity(world, s.frame, ball).x;
         advance(world, s.steps(3.0), s.dt());
@@ -131,8 +133,8 @@ double heap_angle(const Setting& s, float friction, float rolling, uint64_t seed
 // Steeper with sliding and with rolling friction, whatever the seed and the step (Zhou, Xu, Yu, Zulli, Physical Review
 // E 64, 2001, for the trend).
 void angle_of_repose(const Setting& s, Figures& out) {
-    rolls_out(s, out, "ball", Sphere{radius}, {}, 0.4);
-    rolls_out(s, out, "cylinder", Cylinder{0.4f, radius}, rotation_about({1.0f, 0.0f, 0.0f}, 0.5f * pi), 0.5);
+    rolls_out(s, out, "ball", Sphere{roller_radius}, {}, 0.4);
+    rolls_out(s, out, "cylinder", Cylinder{0.4f, roller_radius}, rotation_about({1.0f, 0.0f, 0.0f}, 0.5f * pi), 0.5);
     spins_out(s, out);
     stays_on_slope(s, out);
     if (s.scale >= 20) return;  // a slow build

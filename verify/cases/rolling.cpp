@@ -7,7 +7,7 @@
 namespace lendulet::verify {
 namespace {
 
-constexpr double radius = 0.5;
+constexpr double ball_radius = 0.5;
 
 struct Roller {
     std::string name;
@@ -44,7 +44,7 @@ struct Run {
         id = add_body(world, frame, def);
     }
     double speed() const { return velocity(world, frame, id).x; }
-    double slip() const { return speed() + radius * spin(world, frame, id).z; }  // of the point of contact
+    double slip() const { return speed() + ball_radius * spin(world, frame, id).z; }  // of the point of contact
 };
 
 // Thrown without spin it slides for beta v / (mu g) and ends at v = v0 / (1 + beta), which it keeps.

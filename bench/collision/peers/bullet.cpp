@@ -14,8 +14,6 @@
 namespace lendulet::bench {
 namespace {
 
-constexpr double failed = std::numeric_limits<double>::quiet_NaN();
-
 btVector3 vector_of(Vec3 v) { return {v.x, v.y, v.z}; }
 btTransform transform_of(const Transform& t) {
     const Quat q = t.rotation;
@@ -35,7 +33,7 @@ std::shared_ptr<btConvexShape> shape_of(const Shape& shape) {
     return out;
 }
 
-class BulletSubject : public Subject {
+class BulletSubject : public PairSubject {
 public:
     bool takes(const PairSet&) const override { return true; }
     void load(const PairSet& set) override {
@@ -91,7 +89,7 @@ public:
 
 }  // namespace
 
-void add_bullet_subjects(Subjects& subjects) {
+void add_bullet_subjects(PairSubjects& subjects) {
     subjects.push_back(std::make_unique<GjkEpa>());
     subjects.push_back(std::make_unique<PairDetector>());
 }

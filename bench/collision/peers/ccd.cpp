@@ -10,8 +10,6 @@
 namespace lendulet::bench {
 namespace {
 
-constexpr double failed = std::numeric_limits<double>::quiet_NaN();
-
 struct Solid {
     Vec3 half;                        // of a box
     const std::vector<Vec3>* points;  // of a hull; null: a box
@@ -43,7 +41,7 @@ void centre(const void* object, ccd_vec3_t* out) { ccdVec3Copy(out, &static_cast
 
 enum class Routine { intersect, gjk_epa, portals };
 
-class Ccd final : public Subject {
+class Ccd final : public PairSubject {
 public:
     explicit Ccd(Routine routine) : routine_(routine) {
         CCD_INIT(&settings_);
@@ -111,7 +109,7 @@ private:
 
 }  // namespace
 
-void add_ccd_subjects(Subjects& subjects) {
+void add_ccd_subjects(PairSubjects& subjects) {
     for (Routine r : {Routine::intersect, Routine::gjk_epa, Routine::portals})
         subjects.push_back(std::make_unique<Ccd>(r));
 }

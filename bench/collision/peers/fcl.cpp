@@ -12,8 +12,6 @@
 namespace lendulet::bench {
 namespace {
 
-constexpr double failed = std::numeric_limits<double>::quiet_NaN();
-
 fcl::Transform3d transform_of(const Transform& t) {
     fcl::Transform3d out = fcl::Transform3d::Identity();
     const Quat q = t.rotation;
@@ -39,7 +37,7 @@ std::shared_ptr<fcl::CollisionGeometryd> shape_of(const Shape& shape) {
     return std::make_shared<fcl::Convexd>(vertices, static_cast<int>(triangles.size() / 3), faces);
 }
 
-class Fcl final : public Subject {
+class Fcl final : public PairSubject {
 public:
     std::string routine() const override { return "fcl distance, collide"; }
     bool takes(const PairSet&) const override { return true; }
@@ -78,6 +76,6 @@ private:
 
 }  // namespace
 
-void add_fcl_subjects(Subjects& subjects) { subjects.push_back(std::make_unique<Fcl>()); }
+void add_fcl_subjects(PairSubjects& subjects) { subjects.push_back(std::make_unique<Fcl>()); }
 
 }  // namespace lendulet::bench

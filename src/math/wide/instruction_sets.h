@@ -20,7 +20,9 @@ inline int native_lanes() { return cpu_has_avx512() ? 16 : cpu_has_avx2() ? 8 : 
 
 // The tables of one set of kernels, by lanes; null where they are not compiled. Builds with LENDULET_FOUR_LANES have
 // none of more than four: WebAssembly, where they would only make the module larger, and sanitizers, where compiling
-// them takes minutes. They give the same bits.
+// them takes minutes. Those of eight and sixteen in the instructions that every machine has are slower than four and
+// take minutes too: they are there in builds with LENDULET_EMULATED_LANES, to compare widths on machines without the
+// wider instructions. All give the same bits.
 template <class Table>
 struct KernelTables {
     const Table *one, *four, *eight, *sixteen;

@@ -12,8 +12,11 @@
 
 #include "lendulet/math.h"
 
-#if defined(__SSE2__)
+// The header of all instructions takes a second to read: files compiled for none of the wide ones do without.
+#if defined(__AVX__)
 #include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
 #endif
 
 namespace lendulet {

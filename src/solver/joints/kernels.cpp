@@ -12,10 +12,10 @@ namespace {
 // clang-format off
 constexpr KernelTables<JointTable> tables{
     &baseline_joints_1, &baseline_joints_4,
-#if defined(LENDULET_FOUR_LANES)
-    nullptr, nullptr,
-#else
+#if defined(LENDULET_EMULATED_LANES)
     &baseline_joints_8, &baseline_joints_16,
+#else
+    nullptr, nullptr,
 #endif
 #if defined(__x86_64__) && !defined(LENDULET_FOUR_LANES)
     &avx2_joints, &avx512_joints,

@@ -16,10 +16,10 @@ constexpr KernelTables<NarrowKernels> tables{
 #else
     &baseline_narrow_1, &baseline_narrow_4,
 #endif
-#if defined(LENDULET_FOUR_LANES)
-    nullptr, nullptr,
-#else
+#if defined(LENDULET_EMULATED_LANES)
     &baseline_narrow_8, &baseline_narrow_16,
+#else
+    nullptr, nullptr,
 #endif
 #if defined(__x86_64__) && !defined(LENDULET_FOUR_LANES)
     &avx2_narrow, &avx512_narrow,
