@@ -15,14 +15,12 @@ bool is_within(uint8_t beyond, int corner) { return (beyond & (bit(corner) | bit
 
 }  // namespace
 
-uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, Vec3 lowest) {
+uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, const TriangleSides& sides, Vec3 lowest) {
     float depth = maximum(0.0f, -dot(t.normal, lowest - t.vertices[0]));
     float slack = MeshQuery::level * q.size + half_gentle_tangent * depth;
     uint8_t beyond = 0;
     for (int i = 0; i < 3; ++i) {
-        Vec3 out = out_across(t, i);
-        float distance = dot(lowest - t.vertices[i], out);
-        bool within = distance < 0.0f && distance * distance > slack * slack * length_squared(out);
+        const bool within = dot(sides.out[i], lowest) - sides.offset[i] < -slack;
         if (!within) beyond |= bit(i);
     }
     return beyond;
@@ -43,7 +41,7 @@ Footing::Noted Footing::look_up(const MeshQuery& q, uint32_t index) const {
     Triangle t = make_triangle(q.surface, index, q.position, q.centre);
     return {index,
             {q.surface.vertex(index, 0), q.surface.vertex(index, 1), q.surface.vertex(index, 2)},
-            beyond_edges(q, t, q.lowest_along(t.normal)),
+            beyond_edges(q, t, TriangleSides(t), q.lowest_along(t.normal)),
             t.from_behind};
 }
 

@@ -10,13 +10,13 @@
 
 #include <cstdint>
 
+#include "collision/mesh/over_triangle.h"
 #include "collision/mesh/query.h"
-#include "collision/mesh/triangle.h"
 
 namespace lendulet {
 
 // Bit i: the core's lowest point along the triangle's normal is beyond edge i, or not surely within.
-uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, Vec3 lowest);
+uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, const TriangleSides& sides, Vec3 lowest);
 
 // The triangles that one query has looked at.
 class Footing {

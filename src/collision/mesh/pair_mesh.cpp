@@ -10,6 +10,7 @@
 #include "collision/mesh/filter.h"
 #include "collision/mesh/footing.h"
 #include "collision/mesh/manifolds.h"
+#include "collision/mesh/over_triangle.h"
 #include "collision/pair.h"
 
 namespace lendulet {
@@ -28,7 +29,7 @@ constexpr float flat = 0.998f;
 struct MeshCollision : MeshQuery {
     using MeshQuery::MeshQuery;
     Vec3 facing{};  // the plane's normal
-    Face face;
+    ShapeFace face;
     int32_t face_number = -1;  // of a box or hull
     Vec3 lowest;
 
@@ -164,55 +165,36 @@ void look_at(MeshCollision& q, Vec3 normal) {
     const int32_t number = number_of_face(q.shape, down);
     if (number >= 0 && number == q.face_number) return;
     q.face_number = number;
-    q.face = best_face(q.shape, down);
-    transform_face({{}, q.turn}, q.face);
+    q.face.face = best_face(q.shape, down);
+    transform_face({{}, q.turn}, q.face.face);
+    q.face.update();
 }
 
-// Whether all of the shape's face is beyond an edge of the triangle, and its lowest point, too: over the triangle is
-// then nothing of the face.
-bool is_beside(const MeshCollision& q, const Triangle& t, uint8_t beyond) {
-    const float slack = 10.0f * level * q.size;  // more than clipping allows
+bool is_over(const TriangleSides& sides, Vec3 p) {
     for (int i = 0; i < 3; ++i) {
-        if ((beyond >> i & 1) == 0) continue;
-        const Vec3 out = out_across(t, i);
-        const float edge = dot(out, t.vertices[i]), line = edge + slack * length(out);
-        bool outside = dot(out, q.lowest) > edge;
-        for (int k = 0; k < q.face.count && outside; ++k) outside = dot(out, q.face.vertices[k]) > line;
-        if (outside) return true;
-    }
-    return false;
-}
-
-bool over(const Triangle& t, Vec3 p) {
-    for (int i = 0; i < 3; ++i) {
-        if (dot(p - t.vertices[i], out_across(t, i)) > 0.0f) return false;
+        if (dot(sides.out[i], p) > sides.offset[i]) return false;
     }
     return true;
 }
 
 // The part of the shape's face over the triangle, and its lowest point where that is over it and below the face.
-void clip_to_triangle(const MeshCollision& q, const Triangle& t, ClippedFace& clipped) {
-    clip_face(face_of(t, q.surface), q.face, false, q.pair.margin + q.shape.rounding, clipped);
-    Vec3 tip = q.lowest - clipped.origin;
-    float height = dot(tip, t.normal), deepest = 3e38f;
-    for (int i = 0; i < clipped.count; ++i) {
-        FacePoint& p = clipped.points[i];
-        deepest = minimum(deepest, p.separation);
-        // A corner of the shape has the same name over every triangle, so that it keeps it while it slides.
-        if (p.id >> 16 == face_feature(t.original)) p.id = point_id(face_feature(0), p.id & 0xffffu);
-    }
-    if (height < deepest - 10.0f * level * q.size && over(t, q.lowest)) {
-        uint32_t id = point_id(face_feature(0), face_feature(q.face.id));
-        clipped.points[clipped.count++] = {dot(tip, clipped.u), dot(tip, clipped.v), height, id};
+void clip_to_triangle(const MeshCollision& q, const Triangle& t, const TriangleSides& sides, FaceOverTriangle& out) {
+    clip_over_triangle(q.face, t, sides, q.surface, q.pair.margin + q.shape.rounding, out);
+    const float height = dot(q.lowest - t.vertices[0], t.normal);
+    float deepest = 3e38f;
+    for (int i = 0; i < out.count; ++i) deepest = minimum(deepest, out.points[i].height);
+    if (height < deepest - 10.0f * level * q.size && is_over(sides, q.lowest)) {
+        const uint32_t id = point_id(face_feature(0), face_feature(q.face.face.id));
+        out.points[out.count++] = {q.lowest - height * t.normal, height, id};
     }
 }
 
-void face_contact(const MeshCollision& q, const Triangle& t, const ClippedFace& clipped, TriangleContact& out) {
+void face_contact(const MeshCollision& q, const Triangle& t, const FaceOverTriangle& over, TriangleContact& out) {
     float radius = q.shape.rounding;
-    start(q, t, t.normal, true, radius + q.face.extra_radius, 1.0f, out);
-    for (int i = 0; i < clipped.count && i < max_clipped_points; ++i) {
-        const FacePoint& p = clipped.points[i];
-        add_point(clipped.point(p, 0.5f * (p.separation - radius)), p.separation - radius, p.id, out);
+    start(q, t, t.normal, true, radius + q.face.face.extra_radius, 1.0f, out);
+    for (int i = 0; i < over.count && i < max_clipped_points; ++i) {
+        const FaceOverTriangle::Point& p = over.points[i];
+        add_point(p.foot + (0.5f * (p.height - radius)) * t.normal, p.height - radius, p.id, out);
     }
 }
 
@@ -220,20 +202,20 @@ void face_contact(const MeshCollision& q, const Triangle& t, const ClippedFace& 
 // of the core is over the triangle. Overlapping, take a segment from a lowest point p to the centre: leaving the
 // triangle by the side over edge i takes at least the distance of that edge from the plane of the segment and the
 // edge's direction, and the whole core needs at least as much as a segment in it.
-bool is_shortest(const MeshCollision& q, const Triangle& t, const ClippedFace& clipped) {
-    float lowest = dot(t.normal, q.lowest - clipped.origin), limit = lowest + level * q.size;
+bool is_shortest(const MeshCollision& q, const Triangle& t, const FaceOverTriangle& over) {
+    float lowest = dot(t.normal, q.lowest - t.vertices[0]), limit = lowest + level * q.size;
     Vec3 p{};
     float count = 0.0f;
-    for (int i = 0; i < clipped.count; ++i) {
-        if (clipped.points[i].separation > limit) continue;
-        p += clipped.point(clipped.points[i], clipped.points[i].separation);
+    for (int i = 0; i < over.count; ++i) {
+        if (over.points[i].height > limit) continue;
+        p += over.points[i].foot + over.points[i].height * t.normal;
         count += 1.0f;
     }
     if (count == 0.0f) return false;
     if (lowest >= 0.0f) return true;
     p = (1.0f / count) * p;
     Vec3 along = q.centre - p;
-    if (dot(t.normal, q.centre - clipped.origin) < -lowest) return false;
+    if (dot(t.normal, q.centre - t.vertices[0]) < -lowest) return false;
     for (int i = 0; i < 3; ++i) {
         Vec3 edge = t.vertices[(i + 1) % 3] - t.vertices[i];
         Vec3 side = normalize(cross(along, edge));
@@ -343,16 +325,17 @@ void convex_triangle(MeshCollision& q, const Triangle& t, bool apart, TriangleCo
     float limit = q.pair.margin + q.shape.rounding;
     float height = dot(t.normal, q.lowest - t.vertices[0]);
     if (height > limit) return;
-    const uint8_t beyond = beyond_edges(q, t, q.lowest);
+    const TriangleSides sides(t);
+    const uint8_t beyond = beyond_edges(q, t, sides, q.lowest);
     q.footing.note(q, t, beyond);
-    ClippedFace clipped;
-    if (!is_beside(q, t, beyond)) clip_to_triangle(q, t, clipped);
+    FaceOverTriangle over;
+    clip_to_triangle(q, t, sides, over);
     // A face within a flat or hollow part can touch with its own normal only, and so can the part of one within a
     // gently rolling surface that the shape is over. Overlapping from behind, the way out may be across an edge.
-    const bool gentle = (t.touching & t.sharp) == 0, over_face = clipped.count > 0;
+    const bool gentle = (t.touching & t.sharp) == 0, over_face = over.count > 0;
     bool sure =
         (t.touching == 0 || (gentle && !apart && over_face)) && (height >= 0.0f || !t.from_behind || t.bent == 0);
-    if (sure || is_shortest(q, t, clipped)) return face_contact(q, t, clipped, out);
+    if (sure || is_shortest(q, t, over)) return face_contact(q, t, over, out);
     if (apart) return;
     if (gentle && !over_face && q.beside_count < MeshCollision::most_beside) {
         q.beyond[q.beside_count] = beyond;
@@ -361,7 +344,7 @@ void convex_triangle(MeshCollision& q, const Triangle& t, bool apart, TriangleCo
     }
     ConvexDistance nearest = distance_to(q, t, limit);
     if (nearest.distance > limit || rim_contact(q, t, nearest, out)) return;
-    face_contact(q, t, clipped, out);
+    face_contact(q, t, over, out);
 }
 
 // What the shape is beside, once all that it is over is known.
