@@ -19,7 +19,7 @@ int next_of(int i, int count) { return i + 1 < count ? i + 1 : 0; }
 uint32_t edge_of(const Face& face, int i) { return edge_feature(face.ids[i], face.ids[next_of(i, face.count)]); }
 
 void add(Vec3 foot, float height, uint32_t id, float limit, FaceOverTriangle& out) {
-    if (height <= limit && out.count < max_clipped_points) out.points[out.count++] = {foot, height, id};
+    if (height <= limit && out.count < max_clipped_points) out.points[out.count++] = {foot.x, foot.y, foot.z, height, id};
 }
 
 // A value of each corner, the first one again after the last.
@@ -180,8 +180,7 @@ void clip_over_triangle(const ShapeFace& face, const Triangle& t, const Triangle
     for (int i = 0; i < clipped.count; ++i) {
         const FacePoint& p = clipped.points[i];
         const bool corner = p.id >> 16 == face_feature(t.original);
-        out.points[out.count++] = {clipped.point(p, 0.0f), p.separation,
-                                   corner ? point_id(face_feature(0), p.id & 0xffffu) : p.id};
+        add(clipped.point(p, 0.0f), p.separation, corner ? point_id(face_feature(0), p.id & 0xffffu) : p.id, limit, out);
     }
 }
 

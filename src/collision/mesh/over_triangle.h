@@ -36,10 +36,10 @@ struct TriangleSides {
 
 // Points of the face over the triangle, each by its foot on the triangle's plane and its height over that.
 struct FaceOverTriangle {
-    struct Point {
-        Vec3 foot;
-        float height;
+    struct Point {  // without initial values, as MeshPoint
+        float x, y, z, height;
         uint32_t id;
+        Vec3 foot() const { return {x, y, z}; }
     };
     int count = 0;
     Point points[max_clipped_points];

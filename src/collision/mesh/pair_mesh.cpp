@@ -185,7 +185,8 @@ void clip_to_triangle(const MeshCollision& q, const Triangle& t, const TriangleS
     for (int i = 0; i < out.count; ++i) deepest = minimum(deepest, out.points[i].height);
     if (height < deepest - 10.0f * level * q.size && is_over(sides, q.lowest)) {
         const uint32_t id = point_id(face_feature(0), face_feature(q.face.face.id));
-        out.points[out.count++] = {q.lowest - height * t.normal, height, id};
+        const Vec3 foot = q.lowest - height * t.normal;
+        out.points[out.count++] = {foot.x, foot.y, foot.z, height, id};
     }
 }
 
@@ -194,7 +195,7 @@ void face_contact(const MeshCollision& q, const Triangle& t, const FaceOverTrian
     start(q, t, t.normal, true, radius + q.face.face.extra_radius, 1.0f, out);
     for (int i = 0; i < over.count && i < max_clipped_points; ++i) {
         const FaceOverTriangle::Point& p = over.points[i];
-        add_point(p.foot + (0.5f * (p.height - radius)) * t.normal, p.height - radius, p.id, out);
+        add_point(p.foot() + (0.5f * (p.height - radius)) * t.normal, p.height - radius, p.id, out);
     }
 }
 
@@ -208,7 +209,7 @@ bool is_shortest(const MeshCollision& q, const Triangle& t, const FaceOverTriang
     float count = 0.0f;
     for (int i = 0; i < over.count; ++i) {
         if (over.points[i].height > limit) continue;
-        p += over.points[i].foot + over.points[i].height * t.normal;
+        p += over.points[i].foot() + over.points[i].height * t.normal;
         count += 1.0f;
     }
     if (count == 0.0f) return false;
