@@ -20,12 +20,22 @@ public:
     MeshFilter(const TriangleSurface& surface, const Geometry& shape, Quat turn, Vec3 position, Vec3 lower, Vec3 upper,
                Vec3 centre, float limit, float slack);
 
+    // Masks: bit i is that of triangle i.
     struct Result {
-        uint32_t live = 0;   // bit i: triangle i may touch, or the shape is beyond its plane
-        uint32_t apart = 0;  // bit i: the core is farther than the limit from triangle i, though it crosses its plane
+        uint32_t live = 0;   // it may touch, or the shape is beyond its plane
+        uint32_t apart = 0;  // the core is farther than the limit from it, though it crosses its plane
+        uint32_t behind;     // the shape's centre is
+        uint32_t beside;     // all of the core is outside one of its sides
+        // Where the core's lowest point along its normal is, of shapes of which that is found on the way.
+        bool has_lowest;
+        uint32_t beyond[3];          // see beyond_edges()
+        float x[lanes], y[lanes], z[lanes];  // relative to the shape's position, the shape's axes
+        uint8_t edges_beyond(int i) const {
+            return static_cast<uint8_t>((beyond[0] >> i & 1) | (beyond[1] >> i & 1) << 1 | (beyond[2] >> i & 1) << 2);
+        }
     };
-    // `count` triangles, 1 to 4.
-    Result test(const uint32_t* triangles, int count) const;
+    // `count` triangles, 1 to 4. Where none is live the rest of the result is unset.
+    void test(const uint32_t* triangles, int count, Result& out) const;
 
 private:
     const TriangleSurface& surface_;
@@ -34,7 +44,7 @@ private:
     Vec3 position_, lower_, upper_;  // mesh frame
     Vec3 centre_;                    // relative to the position, mesh axes
     Vec3 box_lower_, box_upper_;     // of the core and the limit, the shape's axes
-    float limit_;
+    float limit_, slack_;
 };
 
 }  // namespace lendulet

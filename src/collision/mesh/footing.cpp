@@ -3,10 +3,6 @@
 namespace lendulet {
 namespace {
 
-// Overlapping by h, the lowest point may be within a side by h tan(a / 2), with a the angle up to which edges are
-// gentle.
-constexpr float half_gentle_tangent = 0.125f;
-
 uint8_t bit(int i) { return static_cast<uint8_t>(1u << i); }
 int before(int i) { return i == 0 ? 2 : i - 1; }
 
@@ -26,13 +22,13 @@ uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, const TriangleSides&
     return beyond;
 }
 
-void Footing::note(const MeshQuery& q, const Triangle& t, uint8_t beyond) {
+void Footing::note(const MeshQuery& q, uint32_t triangle, bool from_behind, uint8_t beyond) {
     if (count_ == capacity) return;
     Noted& n = noted_[count_++];
-    n.index = t.index;
-    for (int k = 0; k < 3; ++k) n.vertex[k] = q.surface.vertex(t.index, k);
+    n.index = triangle;
+    for (int k = 0; k < 3; ++k) n.vertex[k] = q.surface.vertex(triangle, k);
     n.beyond = beyond;
-    n.from_behind = t.from_behind;
+    n.from_behind = from_behind;
 }
 
 Footing::Noted Footing::look_up(const MeshQuery& q, uint32_t index) const {

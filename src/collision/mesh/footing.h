@@ -15,6 +15,10 @@
 
 namespace lendulet {
 
+// Overlapping by h, the lowest point may be within a side by h tan(a / 2), with a the angle up to which edges are
+// gentle.
+inline constexpr float half_gentle_tangent = 0.125f;
+
 // Bit i: the core's lowest point along the triangle's normal is beyond edge i, or not surely within.
 uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, const TriangleSides& sides, Vec3 lowest);
 
@@ -22,7 +26,7 @@ uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, const TriangleSides&
 class Footing {
 public:
     // Beyond the capacity nothing is kept, and more closest points are sought than necessary.
-    void note(const MeshQuery& q, const Triangle& t, uint8_t beyond);
+    void note(const MeshQuery& q, uint32_t triangle, bool from_behind, uint8_t beyond);
     // False only where the shape cannot touch an edge or corner of the triangle, all of whose edges are gentle or
     // cannot touch; of triangles that the lowest point is not over.
     bool may_touch_rim(const MeshQuery& q, const Triangle& t, uint8_t beyond) const;

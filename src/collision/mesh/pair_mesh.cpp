@@ -47,7 +47,7 @@ constexpr float leeway_of_size = 0.08f, leeway_of_margin = 2.0f, most_leeway = 0
 // Wider than rounding, where none are kept: whether a triangle is near is the filter's to say.
 constexpr float least_leeway = 0.01f;
 
-// visit(triangle index, apart) for those that may come within `limit` of the core, in the order of the mesh.
+// visit(triangle index, what the filter found, its number there) for those that may come within `limit` of the core, in the order of the mesh.
 template <class Visit>
 void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&& visit) {
     const MeshFilter filter(q.surface, q.shape, q.turn, q.position, q.lower, q.upper, q.centre, limit, level * q.size);
@@ -56,11 +56,11 @@ void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&
         for (int i = 0; i < count; ++i) q.surface.ask_for_corners(triangles[i]);
         for (int first = 0; first < count; first += MeshFilter::lanes) {
             const int left = count - first;
-            MeshFilter::Result result =
-                filter.test(triangles + first, left < MeshFilter::lanes ? left : MeshFilter::lanes);
-            for (; result.live != 0; result.live &= result.live - 1) {
-                int i = std::countr_zero(result.live);
-                visit(triangles[first + i], (result.apart >> i & 1) != 0);
+            MeshFilter::Result found;
+            filter.test(triangles + first, left < MeshFilter::lanes ? left : MeshFilter::lanes, found);
+            for (uint32_t live = found.live; live != 0; live &= live - 1) {
+                int i = std::countr_zero(live);
+                visit(triangles[first + i], found, i);
             }
         }
     };
@@ -157,11 +157,11 @@ int32_t number_of_face(const Geometry& g, Vec3 direction) {
     return 2 * axis + (component(direction, axis) >= 0.0f ? 1 : 0);
 }
 
-void look_at(MeshCollision& q, Vec3 normal) {
+void look_at(MeshCollision& q, Vec3 normal, const MeshFilter::Result& found, int i) {
     if (q.facing == normal) return;
     q.facing = normal;
     Vec3 down = rotate_inverse(q.turn, -normal);
-    q.lowest = rotate(q.turn, support_core(q.shape, down));
+    q.lowest = rotate(q.turn, found.has_lowest ? Vec3{found.x[i], found.y[i], found.z[i]} : support_core(q.shape, down));
     const int32_t number = number_of_face(q.shape, down);
     if (number >= 0 && number == q.face_number) return;
     q.face_number = number;
@@ -320,15 +320,32 @@ bool rim_contact(const MeshQuery& q, const Triangle& t, const ConvexDistance& ne
     return overlapping && closed && neighbour_pushes(q, t, edges);
 }
 
-// `apart`: the core is known to be farther than the margin from the triangle itself, though not from its plane.
-void convex_triangle(MeshCollision& q, const Triangle& t, bool apart, TriangleContact& out) {
-    look_at(q, t.normal);
+// Whether only the rim of a triangle might touch the shape, which is beside it: then it is noted for later, or left out
+// where no edge of it can touch.
+bool is_left_for_later(MeshCollision& q, uint32_t index, const MeshFilter::Result& found, int i) {
+    const bool behind = (found.behind >> i & 1) != 0, apart = (found.apart >> i & 1) != 0;
+    if (!found.has_lowest || apart || behind || (found.beside >> i & 1) == 0) return false;
+    const uint8_t touching = q.surface.convex_edges(index);
+    if ((touching & q.surface.sharp_edges(index)) != 0 || q.beside_count == MeshCollision::most_beside) return false;
+    const uint8_t beyond = found.edges_beyond(i);
+    q.footing.note(q, index, behind, beyond);
+    if (touching == 0) return true;
+    q.beyond[q.beside_count] = beyond;
+    q.beside[q.beside_count++] = index;
+    return true;
+}
+
+// What triangle `index` gives, number i of those that the filter found.
+void convex_triangle(MeshCollision& q, const Triangle& t, const MeshFilter::Result& found, int i,
+                     TriangleContact& out) {
+    const bool apart = (found.apart >> i & 1) != 0;  // though not from its plane
+    look_at(q, t.normal, found, i);
     float limit = q.pair.margin + q.shape.rounding;
     float height = dot(t.normal, q.lowest - t.vertices[0]);
     if (height > limit) return;
     const TriangleSides sides(t);
-    const uint8_t beyond = beyond_edges(q, t, sides, q.lowest);
-    q.footing.note(q, t, beyond);
+    const uint8_t beyond = found.has_lowest ? found.edges_beyond(i) : beyond_edges(q, t, sides, q.lowest);
+    q.footing.note(q, t.index, t.from_behind, beyond);
     FaceOverTriangle over;
     clip_to_triangle(q, t, sides, over);
     // A face within a flat or hollow part can touch with its own normal only, and so can the part of one within a
@@ -364,12 +381,13 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
     MeshCollision q(pair, settings);
     MeshManifolds manifolds(10.0f * level * q.size);
     const bool ball = pair.b->kind == GeometryKind::point, one_sided = q.surface.one_sided();
-    for_each_near(q, pair.margin + q.shape.rounding, kept, [&](uint32_t index, bool apart) {
+    for_each_near(q, pair.margin + q.shape.rounding, kept, [&](uint32_t index, const MeshFilter::Result& found, int i) {
+        if (!ball && is_left_for_later(q, index, found, i)) return;
         Triangle t = make_triangle(q.surface, index, q.position, q.centre);
         if (t.from_behind && one_sided) return;
         TriangleContact contact;
         if (ball) sphere_triangle(q, t, contact);
-        else convex_triangle(q, t, apart, contact);
+        else convex_triangle(q, t, found, i, contact);
         manifolds.add(contact);
     });
     for (int i = 0; i < q.beside_count; ++i) {
@@ -391,8 +409,8 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
 bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& settings) {
     const MeshQuery q(pair, settings);
     bool touching = false;
-    for_each_near(q, q.shape.rounding, nullptr, [&](uint32_t index, bool apart) {
-        if (touching || apart) return;
+    for_each_near(q, q.shape.rounding, nullptr, [&](uint32_t index, const MeshFilter::Result& found, int i) {
+        if (touching || (found.apart >> i & 1) != 0) return;
         Triangle t = make_triangle(q.surface, index, q.position, q.centre);
         float radius = q.shape.rounding;
         touching = pair.b->kind == GeometryKind::point ? length(nearest_on_triangle(t.vertices, {}).point) <= radius
