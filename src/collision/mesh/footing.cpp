@@ -1,5 +1,7 @@
 #include "collision/mesh/footing.h"
 
+#include "collision/mesh/filter.h"
+
 namespace lendulet {
 namespace {
 

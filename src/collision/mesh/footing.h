@@ -15,10 +15,6 @@
 
 namespace lendulet {
 
-// Overlapping by h, the lowest point may be within a side by h tan(a / 2), with a the angle up to which edges are
-// gentle.
-inline constexpr float half_gentle_tangent = 0.125f;
-
 // Bit i: the core's lowest point along the triangle's normal is beyond edge i, or not surely within.
 uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, const TriangleSides& sides, Vec3 lowest);
 

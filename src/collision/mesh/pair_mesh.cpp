@@ -50,18 +50,12 @@ constexpr float least_leeway = 0.01f;
 // visit(triangle index, what the filter found, its number there) for those that may come within `limit` of the core, in the order of the mesh.
 template <class Visit>
 void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&& visit) {
-    const MeshFilter filter(q.surface, q.shape, q.turn, q.position, q.lower, q.upper, q.centre, limit, level * q.size);
+    MeshFilter filter(q, limit);
     auto look_through = [&](const uint32_t* triangles, int count) {
-        for (int i = 0; i < count; ++i) q.surface.ask_for(triangles[i]);
-        for (int i = 0; i < count; ++i) q.surface.ask_for_corners(triangles[i]);
-        for (int first = 0; first < count; first += MeshFilter::lanes) {
-            const int left = count - first;
-            MeshFilter::Result found;
-            filter.test(triangles + first, left < MeshFilter::lanes ? left : MeshFilter::lanes, found);
-            for (uint32_t live = found.live; live != 0; live &= live - 1) {
-                int i = std::countr_zero(live);
-                visit(triangles[first + i], found, i);
-            }
+        filter.test(triangles, count);
+        for (uint64_t live = filter.live(); live != 0; live &= live - 1) {
+            const int i = std::countr_zero(live);
+            visit(triangles[i], filter, i);
         }
     };
     const Vec3 lower = q.position + q.lower, upper = q.position + q.upper;
@@ -69,6 +63,7 @@ void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&
         float leeway = leeway_of_size * q.size + leeway_of_margin * q.pair.margin;
         kept->find(q.surface, lower, upper, minimum(leeway, most_leeway * q.size));
     }
+    static_assert(MeshCandidates::capacity <= MeshFilter::capacity);
     uint32_t waiting[MeshCandidates::capacity];
     if (kept != nullptr && kept->are_listed()) return look_through(waiting, kept->near(lower, upper, waiting));
     int count = 0;
@@ -157,11 +152,11 @@ int32_t number_of_face(const Geometry& g, Vec3 direction) {
     return 2 * axis + (component(direction, axis) >= 0.0f ? 1 : 0);
 }
 
-void look_at(MeshCollision& q, Vec3 normal, const MeshFilter::Result& found, int i) {
+void look_at(MeshCollision& q, Vec3 normal, const MeshFilter& found, int i) {
     if (q.facing == normal) return;
     q.facing = normal;
     Vec3 down = rotate_inverse(q.turn, -normal);
-    q.lowest = rotate(q.turn, found.has_lowest ? Vec3{found.x[i], found.y[i], found.z[i]} : support_core(q.shape, down));
+    q.lowest = rotate(q.turn, found.has_lowest() ? found.lowest(i) : support_core(q.shape, down));
     const int32_t number = number_of_face(q.shape, down);
     if (number >= 0 && number == q.face_number) return;
     q.face_number = number;
@@ -322,13 +317,12 @@ bool rim_contact(const MeshQuery& q, const Triangle& t, const ConvexDistance& ne
 
 // Whether only the rim of a triangle might touch the shape, which is beside it: then it is noted for later, or left out
 // where no edge of it can touch.
-bool is_left_for_later(MeshCollision& q, uint32_t index, const MeshFilter::Result& found, int i) {
-    const bool behind = (found.behind >> i & 1) != 0, apart = (found.apart >> i & 1) != 0;
-    if (!found.has_lowest || apart || behind || (found.beside >> i & 1) == 0) return false;
+bool is_left_for_later(MeshCollision& q, uint32_t index, const MeshFilter& found, int i) {
+    if (!found.has_lowest() || found.is_apart(i) || found.is_behind(i) || !found.is_beside(i)) return false;
     const uint8_t touching = q.surface.convex_edges(index);
     if ((touching & q.surface.sharp_edges(index)) != 0 || q.beside_count == MeshCollision::most_beside) return false;
     const uint8_t beyond = found.edges_beyond(i);
-    q.footing.note(q, index, behind, beyond);
+    q.footing.note(q, index, false, beyond);
     if (touching == 0) return true;
     q.beyond[q.beside_count] = beyond;
     q.beside[q.beside_count++] = index;
@@ -336,15 +330,15 @@ bool is_left_for_later(MeshCollision& q, uint32_t index, const MeshFilter::Resul
 }
 
 // What triangle `index` gives, number i of those that the filter found.
-void convex_triangle(MeshCollision& q, const Triangle& t, const MeshFilter::Result& found, int i,
+void convex_triangle(MeshCollision& q, const Triangle& t, const MeshFilter& found, int i,
                      TriangleContact& out) {
-    const bool apart = (found.apart >> i & 1) != 0;  // though not from its plane
+    const bool apart = found.is_apart(i);  // though not from its plane
     look_at(q, t.normal, found, i);
     float limit = q.pair.margin + q.shape.rounding;
     float height = dot(t.normal, q.lowest - t.vertices[0]);
     if (height > limit) return;
     const TriangleSides sides(t);
-    const uint8_t beyond = found.has_lowest ? found.edges_beyond(i) : beyond_edges(q, t, sides, q.lowest);
+    const uint8_t beyond = found.has_lowest() ? found.edges_beyond(i) : beyond_edges(q, t, sides, q.lowest);
     q.footing.note(q, t.index, t.from_behind, beyond);
     FaceOverTriangle over;
     clip_to_triangle(q, t, sides, over);
@@ -381,7 +375,7 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
     MeshCollision q(pair, settings);
     MeshManifolds manifolds(10.0f * level * q.size);
     const bool ball = pair.b->kind == GeometryKind::point, one_sided = q.surface.one_sided();
-    for_each_near(q, pair.margin + q.shape.rounding, kept, [&](uint32_t index, const MeshFilter::Result& found, int i) {
+    for_each_near(q, pair.margin + q.shape.rounding, kept, [&](uint32_t index, const MeshFilter& found, int i) {
         if (!ball && is_left_for_later(q, index, found, i)) return;
         Triangle t = make_triangle(q.surface, index, q.position, q.centre);
         if (t.from_behind && one_sided) return;
@@ -409,8 +403,8 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
 bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& settings) {
     const MeshQuery q(pair, settings);
     bool touching = false;
-    for_each_near(q, q.shape.rounding, nullptr, [&](uint32_t index, const MeshFilter::Result& found, int i) {
-        if (touching || (found.apart >> i & 1) != 0) return;
+    for_each_near(q, q.shape.rounding, nullptr, [&](uint32_t index, const MeshFilter& found, int i) {
+        if (touching || found.is_apart(i)) return;
         Triangle t = make_triangle(q.surface, index, q.position, q.centre);
         float radius = q.shape.rounding;
         touching = pair.b->kind == GeometryKind::point ? length(nearest_on_triangle(t.vertices, {}).point) <= radius
