@@ -54,7 +54,8 @@ TEST(OverTriangle, FindsTheCornersThatClippingFinds) {
             ++compared;
             partly += over.count > face.face.count;
             for (int i = 0; i < over.count; ++i)
-                EXPECT_LT(distance_to(over.points[i].foot(), over.points[i].height, clipped.points, clipped.count, of_clipped),
+                EXPECT_LT(distance_to(over.points[i].foot(), over.points[i].height, clipped.points, clipped.count,
+                                      of_clipped),
                           near)
                     << kind.name << " " << n;
             for (int i = 0; i < clipped.count; ++i)

@@ -22,12 +22,12 @@ struct MeshFilterBatch {
     const Geometry* shape;
     const Vec3* hull;  // its corners, where it is a hull of few
     int hull_count;
-    Mat3 to_shape;                  // rows: the shape's axes in those of the mesh
-    Vec3 position, lower, upper;    // of the shape, and bounds relative to that, margin included, mesh axes
-    Vec3 centre;                    // of the shape, relative to its position, mesh axes
-    Vec3 box_centre, box_half;      // of the core, the shape's axes
-    Vec3 box_lower, box_upper;      // of the core and the limit, the shape's axes
-    float limit, slack;             // cores farther than that do not matter, give or take the slack, which is in it
+    Mat3 to_shape;                // rows: the shape's axes in those of the mesh
+    Vec3 position, lower, upper;  // of the shape, and bounds relative to that, margin included, mesh axes
+    Vec3 centre;                  // of the shape, relative to its position, mesh axes
+    Vec3 box_centre, box_half;    // of the core, the shape's axes
+    Vec3 box_lower, box_upper;    // of the core and the limit, the shape's axes
+    float limit, slack;           // cores farther than that do not matter, give or take the slack, which is in it
 
     uint64_t live;    // out: it may touch, or the shape is beyond its plane
     uint64_t apart;   // out: the core is farther than the limit from it, though it crosses its plane

@@ -19,7 +19,8 @@ int next_of(int i, int count) { return i + 1 < count ? i + 1 : 0; }
 uint32_t edge_of(const Face& face, int i) { return edge_feature(face.ids[i], face.ids[next_of(i, face.count)]); }
 
 void add(Vec3 foot, float height, uint32_t id, float limit, FaceOverTriangle& out) {
-    if (height <= limit && out.count < max_clipped_points) out.points[out.count++] = {foot.x, foot.y, foot.z, height, id};
+    if (height <= limit && out.count < max_clipped_points)
+        out.points[out.count++] = {foot.x, foot.y, foot.z, height, id};
 }
 
 // A value of each corner, the first one again after the last.
@@ -67,7 +68,8 @@ struct Ids {
 
     uint32_t corner(int i) const { return point_id(face_feature(0), vertex_feature(face.ids[i])); }
     uint32_t crossing(int edge, int side) const {
-        const uint32_t a = surface.vertex(t.index, side) & 0xffffu, b = surface.vertex(t.index, next_of(side, 3)) & 0xffffu;
+        const uint32_t a = surface.vertex(t.index, side) & 0xffffu,
+                       b = surface.vertex(t.index, next_of(side, 3)) & 0xffffu;
         return point_id(edge_feature(a, b), edge_of(face, edge));
     }
     uint32_t covered(int corner) const {
@@ -180,7 +182,8 @@ void clip_over_triangle(const ShapeFace& face, const Triangle& t, const Triangle
     for (int i = 0; i < clipped.count; ++i) {
         const FacePoint& p = clipped.points[i];
         const bool corner = p.id >> 16 == face_feature(t.original);
-        add(clipped.point(p, 0.0f), p.separation, corner ? point_id(face_feature(0), p.id & 0xffffu) : p.id, limit, out);
+        add(clipped.point(p, 0.0f), p.separation, corner ? point_id(face_feature(0), p.id & 0xffffu) : p.id, limit,
+            out);
     }
 }
 

@@ -1,6 +1,7 @@
 // The part of a shape's face that lies over a triangle: the same polygon as clip_face() finds, from what a face keeps
-// while one triangle after the other is looked at. All edges of the face go through the triangle's sides at once (Liang,
-// Barsky 1984): where they enter and leave, and the triangle's corners that the face covers, are the polygon's corners.
+// while one triangle after the other is looked at. All edges of the face go through the triangle's sides at once
+// (Liang, Barsky 1984): where they enter and leave, and the triangle's corners that the face covers, are the polygon's
+// corners.
 #pragma once
 
 #include <cstdint>

@@ -47,7 +47,8 @@ constexpr float leeway_of_size = 0.08f, leeway_of_margin = 2.0f, most_leeway = 0
 // Wider than rounding, where none are kept: whether a triangle is near is the filter's to say.
 constexpr float least_leeway = 0.01f;
 
-// visit(triangle index, what the filter found, its number there) for those that may come within `limit` of the core, in the order of the mesh.
+// visit(triangle index, what the filter found, its number there) for those that may come within `limit` of the core, in
+// the order of the mesh.
 template <class Visit>
 void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&& visit) {
     MeshFilter filter(q, limit);
@@ -330,8 +331,7 @@ bool is_left_for_later(MeshCollision& q, uint32_t index, const MeshFilter& found
 }
 
 // What triangle `index` gives, number i of those that the filter found.
-void convex_triangle(MeshCollision& q, const Triangle& t, const MeshFilter& found, int i,
-                     TriangleContact& out) {
+void convex_triangle(MeshCollision& q, const Triangle& t, const MeshFilter& found, int i, TriangleContact& out) {
     const bool apart = found.is_apart(i);  // though not from its plane
     look_at(q, t.normal, found, i);
     float limit = q.pair.margin + q.shape.rounding;
