@@ -11,6 +11,9 @@
 namespace lendulet {
 
 struct MeshCandidates;
+struct MeshFilterBatch;
+// See mesh/filter.h; four triangles at a time.
+void filter_triangles(MeshFilterBatch& batch);
 
 struct CollidePair {
     const Geometry* a;
@@ -22,6 +25,7 @@ struct CollidePair {
 
 struct CollideSettings {
     SimplexSolver simplex = SimplexSolver::half_space;
+    void (*filter)(MeshFilterBatch&) = filter_triangles;  // or a wider one with the same results
 };
 
 // What is kept from step to step with the pair: the axis or reference face of the last contact, as hysteresis, and the

@@ -45,12 +45,14 @@ struct alignas(64) IslandLoad {
     uint64_t step = 0;  // one more than the steps before the one that this entry is of
     int contacts = 0;
     float sinking = 0.0f, buckling = 0.0f;  // greatest load ratio of its contacts, per size and per size cubed
-    float lowest = 0.0f, highest = 0.0f;    // positions along gravity, times gravity
-    uint8_t least = 0;                      // class that its joints ask for
-    uint8_t before = 0;                     // class in the step before
-    uint8_t waited = 0;                     // steps since when fewer substeps would do
-    uint8_t substeps = 0;                   // class
-    bool meets_moving = false;              // has a contact with another dynamic body
+    float felt_sinking = 0.0f, felt_buckling = 0.0f;  // the same of what the last step's impulses tell
+    float lowest = 0.0f, highest = 0.0f;              // positions along gravity, times gravity
+    uint8_t least = 0;                                // class that its joints ask for
+    uint8_t before = 0;                               // class in the step before
+    uint8_t waited = 0;                               // steps since when fewer substeps would do
+    uint8_t pressed = 0;                              // steps since when it feels loads that take more
+    uint8_t substeps = 0;                             // class
+    bool meets_moving = false;                        // has a contact with another dynamic body
     bool tied = false;  // to other joints or a kinematic body in motion: takes the setting's substeps
     bool decided = false;
     // Of the body itself.

@@ -32,6 +32,27 @@ TEST(HardIslands, WhatLandsIsNoLoad) {
     }
 }
 
+// Nor is it one for what it lands on, though that has lain still and is pressed against the floor.
+TEST(HardIslands, WhatIsLandedOnCarriesNoMore) {
+    for (float height : {2.2f, 2.9f, 4.1f}) {
+        World world = awake_world();
+        add_floor(world);
+        RigidBodyDef def{.shape = Box{{0.5f, 0.5f, 0.5f}}};
+        for (int i = 0; i < 8; ++i) {
+            def.position = {3.0f * static_cast<float>(i), 0.5f, 0.0f};
+            world.add_rigid_body(def).value();
+        }
+        run(world, 30);
+        for (int i = 0; i < 8; ++i) {
+            RigidBodyDef falling = def;
+            if (i % 2 == 1) falling.shape = Sphere{0.5f};
+            falling.position = {3.0f * static_cast<float>(i) + 0.1f, height + 0.07f * static_cast<float>(i), 0.05f};
+            world.add_rigid_body(falling).value();
+        }
+        EXPECT_EQ(most_hard(world, 120), 0) << height;
+    }
+}
+
 TEST(HardIslands, ColumnsAndHeavyOnLightTakeMore) {
     World world = awake_world();
     add_floor(world);

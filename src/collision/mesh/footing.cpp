@@ -1,11 +1,9 @@
 #include "collision/mesh/footing.h"
 
+#include "collision/mesh/filter.h"
+
 namespace lendulet {
 namespace {
-
-// Overlapping by h, the lowest point may be within a side by h tan(a / 2), with a the angle up to which edges are
-// gentle.
-constexpr float half_gentle_tangent = 0.125f;
 
 uint8_t bit(int i) { return static_cast<uint8_t>(1u << i); }
 int before(int i) { return i == 0 ? 2 : i - 1; }
@@ -15,26 +13,24 @@ bool is_within(uint8_t beyond, int corner) { return (beyond & (bit(corner) | bit
 
 }  // namespace
 
-uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, Vec3 lowest) {
+uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, const TriangleSides& sides, Vec3 lowest) {
     float depth = maximum(0.0f, -dot(t.normal, lowest - t.vertices[0]));
     float slack = MeshQuery::level * q.size + half_gentle_tangent * depth;
     uint8_t beyond = 0;
     for (int i = 0; i < 3; ++i) {
-        Vec3 out = out_across(t, i);
-        float distance = dot(lowest - t.vertices[i], out);
-        bool within = distance < 0.0f && distance * distance > slack * slack * length_squared(out);
+        const bool within = dot(sides.out[i], lowest) - sides.offset[i] < -slack;
         if (!within) beyond |= bit(i);
     }
     return beyond;
 }
 
-void Footing::note(const MeshQuery& q, const Triangle& t, uint8_t beyond) {
+void Footing::note(const MeshQuery& q, uint32_t triangle, bool from_behind, uint8_t beyond) {
     if (count_ == capacity) return;
     Noted& n = noted_[count_++];
-    n.index = t.index;
-    for (int k = 0; k < 3; ++k) n.vertex[k] = q.surface.vertex(t.index, k);
+    n.index = triangle;
+    for (int k = 0; k < 3; ++k) n.vertex[k] = q.surface.vertex(triangle, k);
     n.beyond = beyond;
-    n.from_behind = t.from_behind;
+    n.from_behind = from_behind;
 }
 
 Footing::Noted Footing::look_up(const MeshQuery& q, uint32_t index) const {
@@ -43,7 +39,7 @@ Footing::Noted Footing::look_up(const MeshQuery& q, uint32_t index) const {
     Triangle t = make_triangle(q.surface, index, q.position, q.centre);
     return {index,
             {q.surface.vertex(index, 0), q.surface.vertex(index, 1), q.surface.vertex(index, 2)},
-            beyond_edges(q, t, q.lowest_along(t.normal)),
+            beyond_edges(q, t, TriangleSides(t), q.lowest_along(t.normal)),
             t.from_behind};
 }
 

@@ -10,19 +10,19 @@
 
 #include <cstdint>
 
+#include "collision/mesh/over_triangle.h"
 #include "collision/mesh/query.h"
-#include "collision/mesh/triangle.h"
 
 namespace lendulet {
 
 // Bit i: the core's lowest point along the triangle's normal is beyond edge i, or not surely within.
-uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, Vec3 lowest);
+uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, const TriangleSides& sides, Vec3 lowest);
 
 // The triangles that one query has looked at.
 class Footing {
 public:
     // Beyond the capacity nothing is kept, and more closest points are sought than necessary.
-    void note(const MeshQuery& q, const Triangle& t, uint8_t beyond);
+    void note(const MeshQuery& q, uint32_t triangle, bool from_behind, uint8_t beyond);
     // False only where the shape cannot touch an edge or corner of the triangle, all of whose edges are gentle or
     // cannot touch; of triangles that the lowest point is not over.
     bool may_touch_rim(const MeshQuery& q, const Triangle& t, uint8_t beyond) const;

@@ -10,6 +10,7 @@
 #include "collision/mesh/filter.h"
 #include "collision/mesh/footing.h"
 #include "collision/mesh/manifolds.h"
+#include "collision/mesh/over_triangle.h"
 #include "collision/pair.h"
 
 namespace lendulet {
@@ -28,7 +29,7 @@ constexpr float flat = 0.998f;
 struct MeshCollision : MeshQuery {
     using MeshQuery::MeshQuery;
     Vec3 facing{};  // the plane's normal
-    Face face;
+    ShapeFace face;
     int32_t face_number = -1;  // of a box or hull
     Vec3 lowest;
 
@@ -46,21 +47,16 @@ constexpr float leeway_of_size = 0.08f, leeway_of_margin = 2.0f, most_leeway = 0
 // Wider than rounding, where none are kept: whether a triangle is near is the filter's to say.
 constexpr float least_leeway = 0.01f;
 
-// visit(triangle index, apart) for those that may come within `limit` of the core, in the order of the mesh.
+// visit(triangle index, what the filter found, its number there) for those that may come within `limit` of the core, in
+// the order of the mesh.
 template <class Visit>
 void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&& visit) {
-    const MeshFilter filter(q.surface, q.shape, q.turn, q.position, q.lower, q.upper, q.centre, limit, level * q.size);
+    MeshFilter filter(q, limit);
     auto look_through = [&](const uint32_t* triangles, int count) {
-        for (int i = 0; i < count; ++i) q.surface.ask_for(triangles[i]);
-        for (int i = 0; i < count; ++i) q.surface.ask_for_corners(triangles[i]);
-        for (int first = 0; first < count; first += MeshFilter::lanes) {
-            const int left = count - first;
-            MeshFilter::Result result =
-                filter.test(triangles + first, left < MeshFilter::lanes ? left : MeshFilter::lanes);
-            for (; result.live != 0; result.live &= result.live - 1) {
-                int i = std::countr_zero(result.live);
-                visit(triangles[first + i], (result.apart >> i & 1) != 0);
-            }
+        filter.test(triangles, count);
+        for (uint64_t live = filter.live(); live != 0; live &= live - 1) {
+            const int i = std::countr_zero(live);
+            visit(triangles[i], filter, i);
         }
     };
     const Vec3 lower = q.position + q.lower, upper = q.position + q.upper;
@@ -68,6 +64,7 @@ void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&
         float leeway = leeway_of_size * q.size + leeway_of_margin * q.pair.margin;
         kept->find(q.surface, lower, upper, minimum(leeway, most_leeway * q.size));
     }
+    static_assert(MeshCandidates::capacity <= MeshFilter::capacity);
     uint32_t waiting[MeshCandidates::capacity];
     if (kept != nullptr && kept->are_listed()) return look_through(waiting, kept->near(lower, upper, waiting));
     int count = 0;
@@ -156,63 +153,45 @@ int32_t number_of_face(const Geometry& g, Vec3 direction) {
     return 2 * axis + (component(direction, axis) >= 0.0f ? 1 : 0);
 }
 
-void look_at(MeshCollision& q, Vec3 normal) {
+void look_at(MeshCollision& q, Vec3 normal, const MeshFilter& found, int i) {
     if (q.facing == normal) return;
     q.facing = normal;
     Vec3 down = rotate_inverse(q.turn, -normal);
-    q.lowest = rotate(q.turn, support_core(q.shape, down));
+    q.lowest = rotate(q.turn, found.has_lowest() ? found.lowest(i) : support_core(q.shape, down));
     const int32_t number = number_of_face(q.shape, down);
     if (number >= 0 && number == q.face_number) return;
     q.face_number = number;
-    q.face = best_face(q.shape, down);
-    transform_face({{}, q.turn}, q.face);
+    q.face.face = best_face(q.shape, down);
+    transform_face({{}, q.turn}, q.face.face);
+    q.face.update();
 }
 
-// Whether all of the shape's face is beyond an edge of the triangle, and its lowest point, too: over the triangle is
-// then nothing of the face.
-bool is_beside(const MeshCollision& q, const Triangle& t, uint8_t beyond) {
-    const float slack = 10.0f * level * q.size;  // more than clipping allows
+bool is_over(const TriangleSides& sides, Vec3 p) {
     for (int i = 0; i < 3; ++i) {
-        if ((beyond >> i & 1) == 0) continue;
-        const Vec3 out = out_across(t, i);
-        const float edge = dot(out, t.vertices[i]), line = edge + slack * length(out);
-        bool outside = dot(out, q.lowest) > edge;
-        for (int k = 0; k < q.face.count && outside; ++k) outside = dot(out, q.face.vertices[k]) > line;
-        if (outside) return true;
-    }
-    return false;
-}
-
-bool over(const Triangle& t, Vec3 p) {
-    for (int i = 0; i < 3; ++i) {
-        if (dot(p - t.vertices[i], out_across(t, i)) > 0.0f) return false;
+        if (dot(sides.out[i], p) > sides.offset[i]) return false;
     }
     return true;
 }
 
 // The part of the shape's face over the triangle, and its lowest point where that is over it and below the face.
-void clip_to_triangle(const MeshCollision& q, const Triangle& t, ClippedFace& clipped) {
-    clip_face(face_of(t, q.surface), q.face, false, q.pair.margin + q.shape.rounding, clipped);
-    Vec3 tip = q.lowest - clipped.origin;
-    float height = dot(tip, t.normal), deepest = 3e38f;
-    for (int i = 0; i < clipped.count; ++i) {
-        FacePoint& p = clipped.points[i];
-        deepest = minimum(deepest, p.separation);
-        // A corner of the shape has the same name over every triangle, so that it keeps it while it slides.
-        if (p.id >> 16 == face_feature(t.original)) p.id = point_id(face_feature(0), p.id & 0xffffu);
-    }
-    if (height < deepest - 10.0f * level * q.size && over(t, q.lowest)) {
-        uint32_t id = point_id(face_feature(0), face_feature(q.face.id));
-        clipped.points[clipped.count++] = {dot(tip, clipped.u), dot(tip, clipped.v), height, id};
+void clip_to_triangle(const MeshCollision& q, const Triangle& t, const TriangleSides& sides, FaceOverTriangle& out) {
+    clip_over_triangle(q.face, t, sides, q.surface, q.pair.margin + q.shape.rounding, out);
+    const float height = dot(q.lowest - t.vertices[0], t.normal);
+    float deepest = 3e38f;
+    for (int i = 0; i < out.count; ++i) deepest = minimum(deepest, out.points[i].height);
+    if (height < deepest - 10.0f * level * q.size && is_over(sides, q.lowest)) {
+        const uint32_t id = point_id(face_feature(0), face_feature(q.face.face.id));
+        const Vec3 foot = q.lowest - height * t.normal;
+        out.points[out.count++] = {foot.x, foot.y, foot.z, height, id};
     }
 }
 
-void face_contact(const MeshCollision& q, const Triangle& t, const ClippedFace& clipped, TriangleContact& out) {
+void face_contact(const MeshCollision& q, const Triangle& t, const FaceOverTriangle& over, TriangleContact& out) {
     float radius = q.shape.rounding;
-    start(q, t, t.normal, true, radius + q.face.extra_radius, 1.0f, out);
-    for (int i = 0; i < clipped.count && i < max_clipped_points; ++i) {
-        const FacePoint& p = clipped.points[i];
-        add_point(clipped.point(p, 0.5f * (p.separation - radius)), p.separation - radius, p.id, out);
+    start(q, t, t.normal, true, radius + q.face.face.extra_radius, 1.0f, out);
+    for (int i = 0; i < over.count && i < max_clipped_points; ++i) {
+        const FaceOverTriangle::Point& p = over.points[i];
+        add_point(p.foot() + (0.5f * (p.height - radius)) * t.normal, p.height - radius, p.id, out);
     }
 }
 
@@ -220,20 +199,20 @@ void face_contact(const MeshCollision& q, const Triangle& t, const ClippedFace& 
 // of the core is over the triangle. Overlapping, take a segment from a lowest point p to the centre: leaving the
 // triangle by the side over edge i takes at least the distance of that edge from the plane of the segment and the
 // edge's direction, and the whole core needs at least as much as a segment in it.
-bool is_shortest(const MeshCollision& q, const Triangle& t, const ClippedFace& clipped) {
-    float lowest = dot(t.normal, q.lowest - clipped.origin), limit = lowest + level * q.size;
+bool is_shortest(const MeshCollision& q, const Triangle& t, const FaceOverTriangle& over) {
+    float lowest = dot(t.normal, q.lowest - t.vertices[0]), limit = lowest + level * q.size;
     Vec3 p{};
     float count = 0.0f;
-    for (int i = 0; i < clipped.count; ++i) {
-        if (clipped.points[i].separation > limit) continue;
-        p += clipped.point(clipped.points[i], clipped.points[i].separation);
+    for (int i = 0; i < over.count; ++i) {
+        if (over.points[i].height > limit) continue;
+        p += over.points[i].foot() + over.points[i].height * t.normal;
         count += 1.0f;
     }
     if (count == 0.0f) return false;
     if (lowest >= 0.0f) return true;
     p = (1.0f / count) * p;
     Vec3 along = q.centre - p;
-    if (dot(t.normal, q.centre - clipped.origin) < -lowest) return false;
+    if (dot(t.normal, q.centre - t.vertices[0]) < -lowest) return false;
     for (int i = 0; i < 3; ++i) {
         Vec3 edge = t.vertices[(i + 1) % 3] - t.vertices[i];
         Vec3 side = normalize(cross(along, edge));
@@ -337,22 +316,38 @@ bool rim_contact(const MeshQuery& q, const Triangle& t, const ConvexDistance& ne
     return overlapping && closed && neighbour_pushes(q, t, edges);
 }
 
-// `apart`: the core is known to be farther than the margin from the triangle itself, though not from its plane.
-void convex_triangle(MeshCollision& q, const Triangle& t, bool apart, TriangleContact& out) {
-    look_at(q, t.normal);
+// Whether only the rim of a triangle might touch the shape, which is beside it: then it is noted for later, or left out
+// where no edge of it can touch.
+bool is_left_for_later(MeshCollision& q, uint32_t index, const MeshFilter& found, int i) {
+    if (!found.has_lowest() || found.is_apart(i) || found.is_behind(i) || !found.is_beside(i)) return false;
+    const uint8_t touching = q.surface.convex_edges(index);
+    if ((touching & q.surface.sharp_edges(index)) != 0 || q.beside_count == MeshCollision::most_beside) return false;
+    const uint8_t beyond = found.edges_beyond(i);
+    q.footing.note(q, index, false, beyond);
+    if (touching == 0) return true;
+    q.beyond[q.beside_count] = beyond;
+    q.beside[q.beside_count++] = index;
+    return true;
+}
+
+// What triangle `index` gives, number i of those that the filter found.
+void convex_triangle(MeshCollision& q, const Triangle& t, const MeshFilter& found, int i, TriangleContact& out) {
+    const bool apart = found.is_apart(i);  // though not from its plane
+    look_at(q, t.normal, found, i);
     float limit = q.pair.margin + q.shape.rounding;
     float height = dot(t.normal, q.lowest - t.vertices[0]);
     if (height > limit) return;
-    const uint8_t beyond = beyond_edges(q, t, q.lowest);
-    q.footing.note(q, t, beyond);
-    ClippedFace clipped;
-    if (!is_beside(q, t, beyond)) clip_to_triangle(q, t, clipped);
+    const TriangleSides sides(t);
+    const uint8_t beyond = found.has_lowest() ? found.edges_beyond(i) : beyond_edges(q, t, sides, q.lowest);
+    q.footing.note(q, t.index, t.from_behind, beyond);
+    FaceOverTriangle over;
+    clip_to_triangle(q, t, sides, over);
     // A face within a flat or hollow part can touch with its own normal only, and so can the part of one within a
     // gently rolling surface that the shape is over. Overlapping from behind, the way out may be across an edge.
-    const bool gentle = (t.touching & t.sharp) == 0, over_face = clipped.count > 0;
+    const bool gentle = (t.touching & t.sharp) == 0, over_face = over.count > 0;
     bool sure =
         (t.touching == 0 || (gentle && !apart && over_face)) && (height >= 0.0f || !t.from_behind || t.bent == 0);
-    if (sure || is_shortest(q, t, clipped)) return face_contact(q, t, clipped, out);
+    if (sure || is_shortest(q, t, over)) return face_contact(q, t, over, out);
     if (apart) return;
     if (gentle && !over_face && q.beside_count < MeshCollision::most_beside) {
         q.beyond[q.beside_count] = beyond;
@@ -361,7 +356,7 @@ void convex_triangle(MeshCollision& q, const Triangle& t, bool apart, TriangleCo
     }
     ConvexDistance nearest = distance_to(q, t, limit);
     if (nearest.distance > limit || rim_contact(q, t, nearest, out)) return;
-    face_contact(q, t, clipped, out);
+    face_contact(q, t, over, out);
 }
 
 // What the shape is beside, once all that it is over is known.
@@ -380,12 +375,13 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
     MeshCollision q(pair, settings);
     MeshManifolds manifolds(10.0f * level * q.size);
     const bool ball = pair.b->kind == GeometryKind::point, one_sided = q.surface.one_sided();
-    for_each_near(q, pair.margin + q.shape.rounding, kept, [&](uint32_t index, bool apart) {
+    for_each_near(q, pair.margin + q.shape.rounding, kept, [&](uint32_t index, const MeshFilter& found, int i) {
+        if (!ball && is_left_for_later(q, index, found, i)) return;
         Triangle t = make_triangle(q.surface, index, q.position, q.centre);
         if (t.from_behind && one_sided) return;
         TriangleContact contact;
         if (ball) sphere_triangle(q, t, contact);
-        else convex_triangle(q, t, apart, contact);
+        else convex_triangle(q, t, found, i, contact);
         manifolds.add(contact);
     });
     for (int i = 0; i < q.beside_count; ++i) {
@@ -407,8 +403,8 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
 bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& settings) {
     const MeshQuery q(pair, settings);
     bool touching = false;
-    for_each_near(q, q.shape.rounding, nullptr, [&](uint32_t index, bool apart) {
-        if (touching || apart) return;
+    for_each_near(q, q.shape.rounding, nullptr, [&](uint32_t index, const MeshFilter& found, int i) {
+        if (touching || found.is_apart(i)) return;
         Triangle t = make_triangle(q.surface, index, q.position, q.centre);
         float radius = q.shape.rounding;
         touching = pair.b->kind == GeometryKind::point ? length(nearest_on_triangle(t.vertices, {}).point) <= radius

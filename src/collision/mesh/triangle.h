@@ -12,7 +12,6 @@ namespace lendulet {
 struct Triangle {
     Vec3 vertices[3];   // in the order of the surface
     Vec3 normal;        // unit, towards the shape's centre
-    Vec3 out[3];        // unit, in the plane, out across edge i = (vertex i, vertex i + 1)
     uint32_t index;     // in the surface
     uint32_t original;  // in the user's list
     uint8_t touching;   // bit i: edge i can touch a shape on this side: the surface bends away, or ends

@@ -294,7 +294,7 @@ private:
         }
     }
 
-    CollideSettings settings() const { return {world_.config.simplex}; }
+    CollideSettings settings() const { return {world_.config.simplex, world_.narrow_kernels.filter_triangles}; }
 
     WorldData& world_;
     NarrowScratch& scratch_;

@@ -7,6 +7,7 @@
 #include "collision/batch/boxes.h"
 #include "collision/batch/frame.h"
 #include "collision/batch/round.h"
+#include "collision/mesh/filter.h"
 #include "solver/contact.h"
 
 namespace lendulet {
@@ -58,6 +59,7 @@ struct NarrowKernels {
     void (*collide_boxes)(BoxBatch&);
     void (*collide_segments)(RoundBatch&, BatchManifold*);
     void (*collide_box_balls)(RoundBatch&, BatchManifold*);
+    FilterTriangles filter_triangles;
 };
 
 // The kernels for 1, 4, 8 or 16 lanes in the best instructions this machine has for that width.

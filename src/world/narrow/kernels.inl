@@ -15,11 +15,19 @@ namespace {
 
 #include "collision/batch/round.inl"
 
+#include "collision/mesh/filter.inl"
+
 #include "world/narrow/recycle.inl"
 
 template <int W>
 constexpr NarrowKernels make_narrow_kernels() {
-    return {W, test_motion<W>, refresh<W>, collide_boxes<W>, collide_segments<W>, collide_box_balls<W>};
+    return {W,
+            test_motion<W>,
+            refresh<W>,
+            collide_boxes<W>,
+            collide_segments<W>,
+            collide_box_balls<W>,
+            filter_triangles<(W < 4 ? 4 : W)>};
 }
 
 }  // namespace

@@ -83,7 +83,8 @@ SavedBody capture_body(const WorldData& world, uint32_t slot) {
     if (slot < world.island_loads.size()) {
         const IslandLoad& load = world.island_loads[slot];
         b.loaded = (load.step == world.steps && world.steps > 0) || load.slept;
-        b.substeps = load.substeps, b.waited = load.waited, b.calm = load.calm;
+        b.substeps = load.substeps, b.calm = load.calm;
+        b.waited = load.pressed > 0 ? static_cast<uint8_t>(SavedBody::pressed + load.pressed) : load.waited;
     }
     return b;
 }

@@ -128,7 +128,9 @@ void apply_body(WorldData& world, uint32_t slot, const SavedBody& b) {
     info.capped = b.capped, info.contained = b.contained, info.stopped = b.stopped;
     IslandLoad load{};
     load.step = b.loaded ? world.steps : 0;
-    load.substeps = b.substeps, load.waited = b.waited, load.calm = b.calm;
+    load.substeps = b.substeps, load.calm = b.calm;
+    if (b.waited > SavedBody::pressed) load.pressed = static_cast<uint8_t>(b.waited - SavedBody::pressed);
+    else load.waited = b.waited;
     load.slept = b.loaded && b.asleep;
     world.island_loads[slot] = load;
 }

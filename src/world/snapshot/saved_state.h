@@ -26,7 +26,9 @@ struct SavedBody {
     bool fixed = false;  // a static body: nothing but `placed` is saved of it
     bool mover = false;
     bool asleep = false, has_forces = false, placed = false, capped = false, contained = false, stopped = false;
-    // Of the island that it was in: class of substeps, and how long fewer would have done.
+    // Of the island that it was in: class of substeps, and for how many steps fewer would have done, or, above
+    // `pressed`, more were asked for.
+    static constexpr uint8_t pressed = 128;
     bool loaded = false;
     uint8_t substeps = 0, waited = 0, calm = 0;
 };

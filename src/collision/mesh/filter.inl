@@ -1,0 +1,158 @@
+// The test of MeshFilter, W triangles side by side. Included by units that define a namespace of their own for it.
+
+namespace mesh_filter {
+
+constexpr int directions = 4;  // the normal and three sides
+
+template <class F>
+LENDULET_FORCE_INLINE F height_of_box(Vec3 centre, Vec3 half, Vec3T<F> d) {
+    return dot(splat<F>(centre), d) + dot(splat<F>(half), absolute(d));
+}
+
+// The farthest point along d[0] is `lowest`; false where it was not looked for.
+template <class F>
+LENDULET_FORCE_INLINE bool heights_of_hull(const MeshFilterBatch& b, const Vec3T<F> (&d)[directions],
+                                           F (&out)[directions], Vec3T<F>& lowest) {
+    if (b.hull_count == 0) {
+        for (int k = 0; k < directions; ++k) out[k] = height_of_box(b.box_centre, b.box_half, d[k]);
+        return false;
+    }
+    for (int k = 0; k < directions; ++k) out[k] = splat<F>(-3e38f);
+    for (int i = 0; i < b.hull_count; ++i) {
+        const Vec3T<F> p = splat<F>(b.hull[i]);
+        const F along = dot(p, d[0]);
+        auto farther = along > out[0];
+        out[0] = select(farther, along, out[0]);
+        lowest = select(farther, p, lowest);
+        for (int k = 1; k < directions; ++k) out[k] = maximum(dot(p, d[k]), out[k]);
+    }
+    return true;
+}
+
+// How far the core reaches along each direction (as support_core does, for directions of any length), or farther.
+template <class F>
+LENDULET_FORCE_INLINE bool heights(const MeshFilterBatch& b, const Vec3T<F> (&d)[directions], F (&out)[directions],
+                                   Vec3T<F>& lowest) {
+    const Vec3 size = b.shape->size;
+    const F bottom = splat<F>(size.x), half = splat<F>(size.y), top = splat<F>(size.z), zero{};
+    const GeometryKind kind = b.shape->kind;
+    if (kind == GeometryKind::segment) {
+        for (int k = 0; k < directions; ++k) out[k] = half * absolute(d[k].y);
+        lowest.y = select(d[0].y >= zero, half, -half);
+        return true;
+    }
+    if (kind == GeometryKind::box) {
+        for (int k = 0; k < directions; ++k) out[k] = dot(splat<F>(size), absolute(d[k]));
+        lowest = {select(d[0].x >= zero, bottom, -bottom), select(d[0].y >= zero, half, -half),
+                  select(d[0].z >= zero, top, -top)};
+        return true;
+    }
+    if (kind == GeometryKind::hull) return heights_of_hull(b, d, out, lowest);
+    if (kind == GeometryKind::tapered_capsule || kind == GeometryKind::tapered_cylinder) {
+        for (int k = 0; k < directions; ++k) {
+            const F across = d[k].x * d[k].x + d[k].z * d[k].z;
+            const F spread = square_root(kind == GeometryKind::tapered_cylinder ? across : across + d[k].y * d[k].y);
+            out[k] = maximum(bottom * spread - half * d[k].y, top * spread + half * d[k].y);
+        }
+        return false;
+    }
+    for (int k = 0; k < directions; ++k) out[k] = zero;
+    return kind == GeometryKind::point;
+}
+
+template <class F>
+LENDULET_FORCE_INLINE Vec3T<F> times(const Mat3& m, Vec3T<F> v) {
+    return v.x * splat<F>(m.x) + v.y * splat<F>(m.y) + v.z * splat<F>(m.z);
+}
+
+// The boxes of the triangles.
+template <class F>
+struct Boxes {
+    Vec3T<F> lower, upper;
+};
+template <class F>
+LENDULET_FORCE_INLINE Boxes<F> boxes_of(const Vec3T<F> (&p)[3]) {
+    Boxes<F> b{p[0], p[0]};
+    for (int k = 1; k < 3; ++k) {
+        b.lower = {minimum(p[k].x, b.lower.x), minimum(p[k].y, b.lower.y), minimum(p[k].z, b.lower.z)};
+        b.upper = {maximum(p[k].x, b.upper.x), maximum(p[k].y, b.upper.y), maximum(p[k].z, b.upper.z)};
+    }
+    return b;
+}
+
+// Where they meet one box.
+template <class F>
+LENDULET_FORCE_INLINE auto meet(const Boxes<F>& b, Vec3 box_lower, Vec3 box_upper) {
+    const Vec3T<F> low = splat<F>(box_lower), high = splat<F>(box_upper);
+    return (b.lower.x <= high.x) & (b.lower.y <= high.y) & (b.lower.z <= high.z) & (b.upper.x >= low.x) &
+           (b.upper.y >= low.y) & (b.upper.z >= low.z);
+}
+
+template <class F>
+LENDULET_FORCE_INLINE Vec3T<F> load(const float (&rows)[3][MeshFilterBatch::room], int first) {
+    return {load_wide<F>(rows[0] + first), load_wide<F>(rows[1] + first), load_wide<F>(rows[2] + first)};
+}
+
+template <int W>
+LENDULET_FORCE_INLINE void test_block(MeshFilterBatch& b, int first, uint64_t used) {
+    using F = Wide<float, W>;
+    using V = Vec3T<F>;
+    auto bits = [&](auto mask) { return static_cast<uint64_t>(mask_bits(mask)) & used; };
+    const F zero{};
+    V p[3];
+    for (int k = 0; k < 3; ++k) p[k] = load<F>(b.corner[k], first) - splat<F>(b.position);
+    auto near = meet(boxes_of(p), b.lower, b.upper);
+    if (bits(near) == 0) return;
+
+    V normal = load<F>(b.front, first);
+    auto behind = dot(normal, splat<F>(b.centre) - p[0]) < zero;
+    normal = times(b.to_shape, normal);
+    for (V& v : p) v = times(b.to_shape, v);
+    V away[directions] = {select(behind, normal, -normal)}, out[3];  // away: where to look for what is nearest
+    for (int k = 0; k < 3; ++k) {
+        out[k] = cross(p[(k + 1) % 3] - p[k], normal);
+        away[k + 1] = -out[k];
+    }
+    F reach[directions], size[3];
+    V lowest{zero, zero, zero};
+    b.has_lowest = heights(b, away, reach, lowest);
+    const F height = dot(away[0], p[0]) - reach[0], limit = splat<F>(b.limit);
+    auto live = near & (height <= limit);
+    const F beyond = load_wide<F>(b.lean + first) * limit, outside = splat<F>(10.0f * b.slack);
+    auto beside = zero > zero;
+    for (int k = 0; k < 3; ++k) {
+        size[k] = length(out[k]);
+        const F separation = -reach[k + 1] - dot(out[k], p[k]);
+        live = live & (separation <= beyond * size[k]);
+        beside = beside | (separation > outside * size[k]);
+    }
+    auto within_limit = meet(boxes_of(p), b.box_lower, b.box_upper);
+    live = live & (within_limit | (height < zero));
+    if (bits(live) == 0) return;
+    b.live |= bits(live) << first;
+    b.apart |= bits(~within_limit) << first;
+    b.behind |= bits(behind) << first;
+    b.beside |= bits(beside) << first;
+    if (!b.has_lowest) return;
+    const F slack = splat<F>(b.slack) + splat<F>(half_gentle_tangent) * maximum(zero, -height);
+    for (int k = 0; k < 3; ++k) {
+        auto within = dot(out[k], lowest - p[k]) < -slack * size[k];
+        b.beyond[k] |= bits(~within) << first;
+    }
+    store_wide(b.lowest[0] + first, lowest.x);
+    store_wide(b.lowest[1] + first, lowest.y);
+    store_wide(b.lowest[2] + first, lowest.z);
+}
+
+}  // namespace mesh_filter
+
+template <int W>
+void filter_triangles(MeshFilterBatch& batch) {
+    batch.live = batch.apart = batch.behind = batch.beside = 0;
+    for (uint64_t& b : batch.beyond) b = 0;
+    batch.has_lowest = false;
+    for (int first = 0; first < batch.count; first += W) {
+        const int left = batch.count - first;
+        mesh_filter::test_block<W>(batch, first, (uint64_t{1} << (left < W ? left : W)) - 1u);
+    }
+}
