@@ -108,7 +108,11 @@ export const fileChecks = {
         await page.evaluate(() => window.lendulet.change({ do: "set", solverSteps: 4 }));
         const { hash } = await steps(page, 20);
         const repro = await saved(page, () => page.click("#save-repro"));
-        const found = await until(page, () => location.hash.includes("deeds=") && location.href);
+        // The address follows within a second: until both deeds are in it.
+        const found = await until(page, () => {
+            const deeds = /deeds=([^&]*)/.exec(location.hash)?.[1] ?? "";
+            return atob(deeds.replaceAll("-", "+").replaceAll("_", "/")).includes("solverSteps") && location.href;
+        });
         const address = await found.jsonValue();
         await page.evaluate(() => window.lendulet.open("stack:3"));
         await drop(page, "again.json", repro);
