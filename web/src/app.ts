@@ -31,6 +31,7 @@ export class App {
     colours: Colouring = "body";
     contacts = false;
     theme: Theme = light;
+    away = false; // something else is shown; time stands
     private readonly bodies = new Bodies();
     private readonly twinBodies = new Bodies();
     private readonly marks = new ContactMarks();
@@ -77,7 +78,7 @@ export class App {
         const frame = () => {
             if (this.stopped) return;
             requestAnimationFrame(frame);
-            if (this.player.world) this.guarded(() => this.frame());
+            if (this.player.world && !this.away) this.guarded(() => this.frame());
         };
         requestAnimationFrame(frame);
     }
@@ -285,7 +286,7 @@ export class App {
 
     private frame(): void {
         const now = performance.now();
-        this.player.advance((now - this.lastFrame) / 1000);
+        this.player.advance((now - this.lastFrame) / 1000); // what is more than a tenth of a second is left out
         this.lastFrame = now;
         this.draw();
         this.figures.countFrame();

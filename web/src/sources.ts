@@ -2,6 +2,7 @@
 import type { Engine } from "./engine/engine";
 import { RecordingWorld } from "./engine/recording";
 import { type Catalogue, Connection, StreamWorld } from "./engine/stream";
+import { type Explain, explainInPage } from "./explain/sequence";
 import { Refused, type World } from "./engine/types";
 
 const meta = (name: string) => document.querySelector<HTMLMetaElement>(`meta[name="${name}"]`)?.content ?? null;
@@ -54,6 +55,16 @@ export class Sources implements Catalogue {
         this.native = true;
         const name = meta("lendulet-stream") || meta("lendulet-title") || "scene";
         this.given = { name, make: () => this.openNative("") };
+    }
+
+    // Null: nobody here can explain.
+    get explain(): Explain | null {
+        if (this.engine) return explainInPage;
+        if (!this.connection) return null;
+        return async (question) => {
+            if (!this.connection) throw new Refused("The native engine is gone.");
+            return this.connection.explain(question);
+        };
     }
 
     // Throws Refused, or rejects, with the engine's sentence.

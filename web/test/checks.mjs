@@ -29,7 +29,7 @@ const frames = (page, count) => page.evaluate((count) => new Promise((done) => {
 }), count);
 
 // How many colours, and how much of the commonest one, a picture has.
-async function look(page, png) {
+export async function look(page, png) {
     return page.evaluate(async (base64) => {
         const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
         const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));

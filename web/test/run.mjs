@@ -7,7 +7,8 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
-import { checks } from "./checks.mjs";
+import { checks, look } from "./checks.mjs";
+import { explainChecks } from "./explain.mjs";
 import { fileChecks } from "./files.mjs";
 import { nativeChecks } from "./native.mjs";
 import { serve } from "./server.mjs";
@@ -45,11 +46,11 @@ async function open(options = {}, address = "?shadows=0", url = server.url) {
 
 const program = process.env.LENDULET ?? fileURLToPath(new URL("../../build/release/bin/lendulet", import.meta.url));
 const tools = {
-    open, native, program, folder: resolve(folder), keeps: images !== null,
+    open, look, native, program, folder: resolve(folder), keeps: images !== null,
     save: (name, bytes) => images && writeFileSync(join(images, name), bytes),
 };
 let failed = 0;
-const chosen = Object.entries({ ...checks, ...fileChecks, ...nativeChecks }).filter(([name]) => name.includes(words));
+const chosen = Object.entries({ ...checks, ...explainChecks, ...fileChecks, ...nativeChecks }).filter(([name]) => name.includes(words));
 for (const [name, check] of chosen) {
     const start = Date.now();
     const took = () => `${((Date.now() - start) / 1000).toFixed(1).padStart(5)} s  ${name}`;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/lendulet/view/reply.h"
+#include "explain/flat.h"
 #include "io/file.h"
 
 namespace lendulet::cli {
@@ -40,6 +41,11 @@ struct Session::Request {
         for (size_t i = 0; good && i < 3; ++i) good = (*it)[i].is_number();
         if (!good) throw Refused{std::string(name) + " must be three numbers"};
         for (size_t i = 0; i < 3; ++i) out[i] = (*it)[i].get<float>();
+    }
+    const Json& object(const char* name) const {
+        auto it = json.find(name);
+        if (it == json.end() || !it->is_object()) throw Refused{std::string(name) + " must be an object"};
+        return *it;
     }
     const Json& list(const char* name) const {
         auto it = json.find(name);
@@ -106,6 +112,14 @@ std::string lists() {
             out["choices"].back().push_back(lendulet_choice_name(kind, i));
     }
     return out.dump();
+}
+
+template <class Request>
+std::string explained(const Request& asked) {
+    Result<explain::Sequence> made =
+        explain::sequence({asked.text("what"), asked.text("a"), asked.text("b"), asked.text("simplex")});
+    if (!made) throw typename Request::Refused{made.error().message};
+    return explain::flat(made.value());
 }
 
 void add_shapes(Reply& reply, lendulet_world* world) {
@@ -257,6 +271,7 @@ std::string Session::answer(std::string_view text) {
         const Request request{json};
         try {
             perform(request);
+            if (request.has("explain")) reply.text(Section::explain, explained(Request{request.object("explain")}));
         } catch (const Request::Refused& refused) {
             reply.text(Section::error, refused.sentence);
         }

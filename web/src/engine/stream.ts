@@ -1,9 +1,10 @@
 // A world of the native engine behind a WebSocket (`lendulet view`). The page asks, the engine answers with what the
 // page wants to show, and only then is it asked again: see apps/lendulet/view/session.h for what goes over the wire.
+import { type Question, type Sequence, sequenceAt } from "../explain/sequence";
 import { bodyAt, bytesOf, collidersAt, hashText, jointsAt, settingsAt, statisticsAt, vectorAt } from "./decode";
 import {
-    type BodyState, type Collider, type Command, type Hit, type JointInfo, type Kept, poseStride, type SceneInfo,
-    type Settings, type Shapes, type Statistics, type Surface, type Vec3, type World,
+    type BodyState, type Collider, type Command, type Hit, type JointInfo, type Kept, poseStride, Refused,
+    type SceneInfo, type Settings, type Shapes, type Statistics, type Surface, type Vec3, type World,
 } from "./types";
 
 const magic = 0x56444e4c;
@@ -11,7 +12,7 @@ const lookFor = 1000; // ms for which something that was asked for is sent with 
 
 enum Section {
     error = 1, state, poses, bodies, colliders, mesh, contacts, statistics, body, grab, joints, boxes, groups, motions,
-    settings, names, lists,
+    settings, names, lists, explain,
 }
 
 interface Asked {
@@ -24,6 +25,7 @@ interface Asked {
     go?: number;
     forget?: number[];
     body?: number;
+    explain?: Question;
     want?: string[];
 }
 type Sections = Map<Section, [at: number, bytes: number][]>;
@@ -69,6 +71,13 @@ export class Connection {
         return new Promise((done) => this.ask({ want: ["lists"] }, ({ buffer, sections }) => {
             const [at, bytes] = sections.get(Section.lists)![0];
             done(JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, at, bytes))) as Catalogue);
+        }));
+    }
+    explain(question: Question): Promise<Sequence> {
+        return new Promise((done, fail) => this.ask({ explain: question }, ({ buffer, sections }) => {
+            const [error] = sections.get(Section.error) ?? [], [made] = sections.get(Section.explain) ?? [];
+            if (made) done(sequenceAt(buffer, made[0]));
+            else fail(new Refused(new TextDecoder().decode(new Uint8Array(buffer, ...error))));
         }));
     }
     private take(buffer: ArrayBuffer): void {

@@ -82,10 +82,11 @@ export class Stage {
         this.camera.updateProjectionMatrix();
     }
 
-    // Looks at what lies within the bounds, from a little above.
-    frame(bounds: THREE.Box3): void {
+    // Looks at what lies within the bounds, from a little above. `least`: radius of the smallest thing that fills the
+    // picture, m.
+    frame(bounds: THREE.Box3, least = 1.2): void {
         const sphere = bounds.getBoundingSphere(new THREE.Sphere());
-        const radius = Math.min(Math.max(sphere.radius, 1.2), 400);
+        const radius = Math.min(Math.max(sphere.radius, least), 400);
         this.setReach(radius);
         const half = (this.camera.fov * Math.PI) / 360;
         const narrow = Math.atan(Math.tan(half) * Math.min(this.camera.aspect, 1));
