@@ -18,7 +18,7 @@ import { ContactMarks } from "./view/marks";
 import type { Stage } from "./view/stage";
 import { Structure } from "./view/structure";
 import { type Colouring, colourings, dark, light, type Theme } from "./view/theme";
-import type { Visuals } from "./view/visuals";
+import { Visuals } from "./view/visuals";
 
 const firstScene = "mixed_pile:600";
 const ballSpeed = 22; // in radii of the scene a second, at most 40 m/s
@@ -130,7 +130,17 @@ export class App {
             this.stage.controls.target.fromArray(link.view, 3);
             this.stage.controls.update();
         }
+        if (world.looks) void this.dress(world, scene);
         this.writeLink();
+    }
+    // Draws what the world's file shows, once it is there.
+    private async dress(world: World, name: string): Promise<void> {
+        try {
+            const visuals = await Visuals.read(world.looks!);
+            if (this.player.world === world) this.setVisuals(visuals);
+        } catch (error) {
+            this.say(`${name}: what collides is drawn (${(error as Error).message})`);
+        }
     }
     setSize(size: number): void {
         const name = this.player.sceneName.split(":")[0];

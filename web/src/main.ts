@@ -3,7 +3,7 @@
 import { App } from "./app";
 import { Engine } from "./engine/engine";
 import type { ExplainMode } from "./explain/mode";
-import { moduleBytes } from "./engine/module";
+import { fileBytes } from "./engine/module";
 import { Sources } from "./sources";
 import { connect } from "./ui/controls";
 import { element } from "./ui/dom";
@@ -19,7 +19,7 @@ declare global {
 
 async function loadEngine(): Promise<Engine | null> {
     if (!Sources.wantsEngine) return null;
-    return Engine.load(await moduleBytes("lendulet.wasm"));
+    return Engine.load(await fileBytes("lendulet.wasm"));
 }
 
 async function main(): Promise<void> {

@@ -75,6 +75,6 @@ export class Sources implements Catalogue {
     }
     private openNative(scene: string): Promise<World> {
         if (!this.connection) throw new Refused("The native engine is gone.");
-        return StreamWorld.open(this.connection, scene);
+        return StreamWorld.open(this.connection, scene, scene === "" ? meta("lendulet-gltf") : null);
     }
 }

@@ -130,8 +130,20 @@ void add_shapes(Reply& reply, lendulet_world* world) {
     for (uint32_t i = 0; lendulet_read_mesh(world, static_cast<int32_t>(i), &mesh) >= 0; ++i) reply.mesh(i, mesh);
 }
 
+void add_nodes(Reply& reply, lendulet_world* world) {
+    const World& w = world->scene.world;
+    std::vector<int32_t> pairs;
+    std::map<uint32_t, int32_t> place;  // in the list of bodies, by slot
+    for (int32_t i = 0; i < w.body_count(); ++i) place[w.body(i).index] = i;
+    for (auto [node, body] : world->scene.nodes)
+        if (auto it = place.find(body.index); it != place.end() && w.body(it->second) == body)
+            pairs.insert(pairs.end(), {node, it->second});
+    reply.list(Section::nodes, pairs.data(), pairs.size());
+}
+
 void add_wanted(Reply& reply, lendulet_world* world, const std::string& what, int body) {
     if (what == "shapes") return add_shapes(reply, world);
+    if (what == "nodes") return add_nodes(reply, world);
     if (what == "poses") return add_list(reply, Section::poses, world, lendulet_read_poses);
     if (what == "contacts") return add_list(reply, Section::contacts, world, lendulet_read_contacts);
     if (what == "joints") return add_list(reply, Section::joints, world, lendulet_read_joints);

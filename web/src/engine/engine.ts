@@ -3,8 +3,8 @@
 import { bodyAt, collidersAt, hashText, jointsAt, putSettings, settingsAt, statisticsAt, vectorAt } from "./decode";
 import {
     type BodyState, boxStride, type Command, contactStride, groupStride, type Hit, type JointInfo, type Kept,
-    motionStride, poseStride, Refused, type SceneInfo, type Settings, type Shapes, type Statistics, type Surface,
-    type Vec3, type World,
+    type Looks, motionStride, poseStride, Refused, type SceneInfo, type Settings, type Shapes, type Statistics,
+    type Surface, type Vec3, type World,
 } from "./types";
 import { Module } from "./module";
 
@@ -73,6 +73,7 @@ export class PageWorld implements World {
     readonly busy = false;
     arrived: (steps: number) => void = () => undefined;
     failed: (sentence: string) => void = () => undefined;
+    looks?: Looks;
 
     constructor(readonly engine: Engine, readonly handle: number) {}
     destroy(): void {

@@ -50,8 +50,8 @@ export class Module {
 }
 
 // The bytes of a file beside the page.
-export async function moduleBytes(file: string): Promise<ArrayBuffer> {
+export async function fileBytes(file: string): Promise<Uint8Array<ArrayBuffer>> {
     const answer = await fetch(file);
     if (!answer.ok) throw new Error(`${file} cannot be loaded (${answer.status})`);
-    return answer.arrayBuffer();
+    return new Uint8Array(await answer.arrayBuffer());
 }

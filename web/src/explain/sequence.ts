@@ -1,5 +1,5 @@
 // What the engine did with two shapes, step by step: the bytes of explain/flat.h as objects, and who is asked for them.
-import { Module, moduleBytes } from "../engine/module";
+import { Module, fileBytes } from "../engine/module";
 import { Refused } from "../engine/types";
 
 export enum MarkKind {
@@ -71,7 +71,7 @@ export type Explain = (question: Question) => Promise<Sequence>;
 // The engine's second module, loaded when it is first asked.
 class Explainer extends Module {
     static async load(): Promise<Explainer> {
-        return new Explainer(await Module.start(await moduleBytes("lendulet_explain.wasm")));
+        return new Explainer(await Module.start(await fileBytes("lendulet_explain.wasm")));
     }
     ask({ what, simplex, a, b }: Question): Sequence {
         return this.withTexts([what, simplex, a, b], (texts) => this.with(new Uint8Array(4), (out) => {
