@@ -129,7 +129,7 @@ export const fileChecks = {
     },
 
     async "files: a picture and a film are saved, and show the scene"({ open, look }) {
-        const page = await open({ ...wide, acceptDownloads: true }, "?shadows=0#scene=stack:4");
+        const page = await open({ ...wide, acceptDownloads: true }, "?shadows=0#scene=stack:4&paused=1");
         const picture = await saved(page, () => page.click("#save-picture"));
         assert.equal(picture.subarray(1, 4).toString(), "PNG");
         const { colours, commonest } = await look(page, picture);
@@ -151,10 +151,16 @@ export const fileChecks = {
                 video.onerror = () => fail(new Error(video.error.message));
             });
             const pen = new OffscreenCanvas(video.videoWidth, video.videoHeight).getContext("2d");
+            await video.play();
+            await new Promise((done) => {
+                video.onended = done;
+                video.ontimeupdate = () => video.currentTime > 0.7 && done();
+            });
             pen.drawImage(video, 0, 0);
             const { data } = pen.getImageData(0, 0, video.videoWidth, video.videoHeight);
+            const colours = new Set(new Uint32Array(data.buffer)).size;
             const size = [canvas.width, canvas.height], film = [video.videoWidth, video.videoHeight];
-            return { size, film, colours: new Set(new Uint32Array(data.buffer)).size };
+            return { size, film, colours };
         }, film.toString("base64"));
         assert.ok(shown.film.every((v, i) => Math.abs(v - shown.size[i]) <= 1), JSON.stringify(shown));
         assert.ok(shown.colours > 50, JSON.stringify(shown));

@@ -124,6 +124,8 @@ export class Files {
             film.addEventListener("dataavailable", (event) => parts.push(event.data));
             film.addEventListener("stop", () => download(`${this.name}.webm`, new Blob(parts)));
             film.start();
+            // A scene that stands is drawn once for it.
+            requestAnimationFrame(() => this.app.stage.render());
             this.film = film;
         }
         button.setAttribute("aria-pressed", String(this.film !== null));
