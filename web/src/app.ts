@@ -5,7 +5,7 @@ import { EngineStopped } from "./engine/wasi";
 import { type Command, Refused, type World } from "./engine/types";
 import { type Deed, Player } from "./player";
 import { Pointer, vector } from "./pointer";
-import { followedIn, titleOf } from "./scenes";
+import { followedIn, lookIn, titleOf } from "./scenes";
 import type { Sources } from "./sources";
 import { element } from "./ui/dom";
 import { Figures } from "./ui/figures";
@@ -20,7 +20,7 @@ import { Structure } from "./view/structure";
 import { type Colouring, colourings, dark, light, type Theme } from "./view/theme";
 import { Visuals } from "./view/visuals";
 
-const firstScene = "mixed_pile:600";
+const firstScene = "domino_spiral:300";
 const ballSpeed = 22; // in radii of the scene a second, at most 40 m/s
 
 export class App {
@@ -124,7 +124,7 @@ export class App {
         this.list.mark(name);
         this.tuning.show(world.settings());
         this.stage.update(); // the camera's shape before it is placed
-        this.lookAtAll();
+        this.lookAtAll(lookIn(name));
         if (link.view) {
             this.stage.camera.position.fromArray(link.view);
             this.stage.controls.target.fromArray(link.view, 3);
@@ -147,8 +147,9 @@ export class App {
         const info = this.sources.scenes.find((s) => s.name === name);
         if (info) this.open(size >= 1 ? `${name}:${Math.round(size)}` : nameWithSize(info));
     }
-    lookAtAll(): void {
-        this.stage.frame(this.bodies.measure(this.player.picture.now));
+    // At a box, by its two corners, or at what moves.
+    lookAtAll(box?: number[]): void {
+        this.stage.frame(box ? new THREE.Box3().setFromArray(box) : this.bodies.measure(this.player.picture.now));
         this.dirty = true;
     }
 

@@ -183,8 +183,8 @@ export const checks = {
             ["domino_spiral:300", 700, "body", "light"], ["brick_tower:20", 190, "body", "light"],
             ["hourglass:800", 330, "body", "light"], ["bridge:26", 330, "body", "light"],
             ["gear_train:5", 120, "body", "light"], ["walker", 200, "body", "light", "fit"],
-            ["ragdoll_avalanche:60", 150, "body", "light", "fit"], ["marble_machine:40", 480, "body", "dark"],
-            ["mixed_pile:600", 300, "body", "light", "fit"], ["ragdolls:24", 150, "body", "light"],
+            ["ragdoll_avalanche:60", 170, "body", "light"], ["marble_machine:40", 480, "body", "dark"],
+            ["mixed_pile:600", 300, "body", "light"], ["ragdolls:24", 150, "body", "light"],
             ["wall_ball:14", 75, "body", "light"], ["mesh_terrain:400", 200, "body", "light"],
             ["joint_grid:24", 110, "body", "light"], ["tumbler:9", 240, "speed", "dark"],
         ];
