@@ -21,6 +21,7 @@ import { type Colouring, colourings, dark, light, type Theme } from "./view/them
 import { Visuals } from "./view/visuals";
 
 const firstScene = "domino_spiral:300";
+const besideFarther = 1.7; // times as far away the camera is where two futures stand side by side
 const ballSpeed = 22; // in radii of the scene a second, at most 40 m/s
 
 export class App {
@@ -163,10 +164,14 @@ export class App {
         }
         this.bodies.build(shapes, otherScene);
         if (otherScene) this.structure.forget();
-        const { twin } = this.player;
-        if (twin && !this.twinBodies.group.visible) this.twinBodies.build(shapes, true);
-        this.twinBodies.group.visible = twin !== null;
+        const { twin } = this.player, { group } = this.twinBodies, was = group.visible;
+        if (twin && !was) this.twinBodies.build(shapes, true);
+        group.visible = twin !== null;
         if (twin) this.placeTwin();
+        // Both futures are in the picture, and the one that is left again.
+        const half = group.position.clone().multiplyScalar(0.5);
+        if (twin && !was) this.stage.shift(half, besideFarther);
+        if (!twin && was && !otherScene) this.stage.shift(half.negate(), 1 / besideFarther);
         element("futures").hidden = twin === null;
         element("fork").setAttribute("aria-pressed", String(twin !== null));
         this.dirty = true;

@@ -223,11 +223,10 @@ export const checks = {
             window.lendulet.setStructure({ boxes: "levels" });
         }, 1);
         await show("futures", "large_pyramid:12", 30, () => {
-            const app = window.lendulet, { camera, controls } = app.stage;
+            const app = window.lendulet;
             app.player.fork();
-            app.shoot(300, 200);
+            app.shoot(...app.stage.project([0, 4, 0]));
             document.getElementById("message").hidden = true;
-            camera.position.sub(controls.target).multiplyScalar(1.6).add(controls.target);
         }, 70);
         await show("joints", "ragdolls:6", 60, () => window.lendulet.setStructure({ joints: true }), 1);
     },

@@ -51,8 +51,8 @@ enum class Section : uint32_t {
     groups,
     motions,
     settings,
-    names,   // of bodies that have one: u32 index, u32 bytes, the name, padded to four bytes
-    lists,   // JSON: scenes, stages, choices
+    names,    // of bodies that have one: u32 index, u32 bytes, the name, padded to four bytes
+    lists,    // JSON: scenes, stages, choices
     explain,  // see explain/flat.h
     nodes     // pairs of i32: the node of the glTF file, its body
 };

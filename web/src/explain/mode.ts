@@ -1,19 +1,19 @@
 // Explain mode: two shapes in the hand on one side, and on the other what the engine does to find how they meet, step
-// by step. The address has it all: #explain=WHAT&a=SHAPE&b=SHAPE&step=N.
+// by step. The address has it all (address.ts).
 import * as THREE from "three";
 import { Refused } from "../engine/types";
 import { element } from "../ui/dom";
 import { dark, light, type Theme } from "../view/theme";
+import { commandOf, readAddress, writeAddress } from "./address";
 import { Hand, type Way } from "./hand";
 import { pairs } from "./pairs";
 import { Choice, ShapeFields } from "./panel";
-import type { Explain, Sequence } from "./sequence";
+import type { Explain, Question, Sequence } from "./sequence";
 import { HeldShape } from "./shapes";
 import { ground } from "./ground";
 import { firstOrbit, View } from "./view";
 
 const stepTime = 1100; // ms a step is shown while they play
-const words = ["gjk", "epa", "distance", "clip", "sat"];
 
 export class ExplainMode {
     readonly shapes = [new HeldShape(), new HeldShape()];
@@ -61,17 +61,12 @@ export class ExplainMode {
 
     // --- coming and going
 
-    static wanted(hash: string): boolean {
-        return new URLSearchParams(hash.slice(1)).has("explain");
-    }
     // With what the address asks for, as far as it makes sense.
     open(theme: Theme, hash: string): void {
         this.read(hash);
         if (this.isOpen) return;
         this.isOpen = true;
-        element("explain").hidden = false;
-        document.body.toggleAttribute("data-explain", true);
-        element("explain-open").setAttribute("aria-current", "true");
+        this.cover(true);
         this.setTheme(theme);
         const frame = () => {
             if (!this.isOpen) return;
@@ -81,17 +76,13 @@ export class ExplainMode {
         requestAnimationFrame(frame);
     }
     private read(hash: string): void {
-        const values = new URLSearchParams(hash.slice(1)), [what, a, b] = pairs[this.pair];
-        const asked = values.get("explain") ?? "";
-        this.what = words.includes(asked) ? asked : what;
-        this.simplex = values.get("simplex") === "barycentric" ? "barycentric" : "half-space";
-        [a, b].forEach((usual, i) => {
-            const { shapes } = this;
-            if (!shapes[i].read(values.get("ab"[i]) ?? "")) shapes[i].read(usual);
-        });
-        const step = Number(values.get("step"));
-        this.step = step >= 1 ? step : 1;
-        this.playing = !(step >= 1) && !matchMedia("(prefers-reduced-motion: reduce)").matches;
+        const [what, a, b] = pairs[this.pair], asked = readAddress(hash), { shapes } = this;
+        this.what = asked.what ?? what;
+        this.simplex = asked.simplex;
+        if (!shapes[0].read(asked.a ?? "")) shapes[0].read(a);
+        if (!shapes[1].read(asked.b ?? "")) shapes[1].read(b);
+        this.step = asked.step ?? 1;
+        this.playing = asked.step === undefined && !matchMedia("(prefers-reduced-motion: reduce)").matches;
         this.start();
     }
     private start(): void {
@@ -103,10 +94,16 @@ export class ExplainMode {
     }
     close(): void {
         this.isOpen = false;
-        element("explain").hidden = true;
-        document.body.toggleAttribute("data-explain", false);
-        element("explain-open").removeAttribute("aria-current");
+        this.cover(false);
         this.closed();
+    }
+    // What lies beneath cannot be reached by keys while the mode is open.
+    private cover(on: boolean): void {
+        element("explain").hidden = !on;
+        document.body.toggleAttribute("data-explain", on);
+        for (const beneath of ["view", "figures", "transport"]) element(beneath).inert = on;
+        if (on) element("explain-open").setAttribute("aria-current", "true");
+        else element("explain-open").removeAttribute("aria-current");
     }
     setTheme(theme: Theme): void {
         this.theme = theme;
@@ -165,6 +162,10 @@ export class ExplainMode {
         if (!first || !this.sequence) return null;
         return { shape: meshes.get(this.sequence.solids[0]) === first.object ? 0 : 1, point: first.point };
     }
+    private get question(): Question {
+        const [a, b] = this.shapes.map((shape) => shape.text);
+        return { what: this.what, simplex: this.simplex, a, b };
+    }
     private get lastStep(): number {
         return (this.sequence?.steps.length ?? 1) - 1;
     }
@@ -194,15 +195,15 @@ export class ExplainMode {
         this.asking = true;
         this.stale = false;
         const atEnd = this.step >= this.lastStep && this.lastStep > 0;
-        const [a, b] = this.shapes.map((shape) => shape.text), { what, simplex } = this;
+        const { question } = this;
         try {
-            this.sequence = await this.explain({ what, simplex, a, b });
+            this.sequence = await this.explain(question);
             this.say("");
         } catch (error) {
-            if (!(error instanceof Refused)) throw error;
-            this.say(error.message);
+            this.say((error as Error).message);
+            if (!(error instanceof Refused)) return console.error(error);
             // The shapes are shown all the same, where they are shapes.
-            this.sequence = await this.explain({ what: "distance", simplex, a, b }).then(
+            this.sequence = await this.explain({ ...question, what: "distance" }).then(
                 (shown) => ({ ...shown, steps: shown.steps.slice(0, 1) }), () => this.sequence);
         } finally {
             this.asking = false;
@@ -228,7 +229,7 @@ export class ExplainMode {
         this.right.stage.light(new THREE.Box3().setFromObject(this.right.drawing.group));
         this.describe();
         element("explain").dataset.solids = String(solids.length);
-        this.writeLink();
+        if (!this.hand.busy) writeAddress(this.question, this.step);
     }
     private aimNow(place: THREE.Matrix4): void {
         const { solids, steps } = this.sequence!, atOnce = this.aimed === "at once";
@@ -267,18 +268,8 @@ export class ExplainMode {
         const play = element("explain-play");
         element("explain").toggleAttribute("data-playing", this.playing);
         play.setAttribute("aria-label", this.playing ? "Pause (space)" : "Play the steps (space)");
-        const [a, b] = this.shapes.map((shape) => shape.text);
-        const option = this.simplex === "half-space" ? "" : ` --simplex ${this.simplex}`;
-        element("explain-words").textContent = `lendulet explain ${this.what} ${a} ${b}${option}`;
+        element("explain-words").textContent = commandOf(this.question);
     }
-    private writeLink(): void {
-        if (this.hand.busy) return;
-        const [a, b] = this.shapes.map((shape) => shape.text), simplex = this.simplex;
-        const more = simplex === "half-space" ? "" : `&simplex=${simplex}`;
-        const hash = `#explain=${this.what}&a=${a}&b=${b}${more}&step=${this.step}`;
-        if (location.hash !== hash) history.replaceState(null, "", hash);
-    }
-
     private connect(): void {
         const on = (id: string, action: () => void) => element(id).addEventListener("click", action);
         on("explain-close", () => this.close());

@@ -1,5 +1,6 @@
 // The way into explain mode and back: the entry over the list of scenes, the key E, the address.
 import type { App } from "../app";
+import { isAddress } from "../explain/address";
 import { ExplainMode } from "../explain/mode";
 import { element } from "./dom";
 
@@ -23,12 +24,13 @@ export function connectExplain(app: App, shadows: number, address: string): void
         mode ??= window.lenduletExplain = new ExplainMode(explain, shadows, closed);
         mode.open(app.theme, hash);
     };
-    window.addEventListener("hashchange", () => {
-        if (ExplainMode.wanted(location.hash)) open(location.hash);
+    window.addEventListener("hashchange", ({ newURL }) => {
+        const { hash } = new URL(newURL); // the address may be another one by now: the scene writes its own into it
+        if (isAddress(hash)) open(hash);
         else if (mode?.isOpen) mode.close();
     });
     element("list").addEventListener("click", (event) => {
         if (mode?.isOpen && (event.target as HTMLElement).closest("a")) mode.close();
     });
-    if (ExplainMode.wanted(address)) open(address);
+    if (isAddress(address)) open(address);
 }
