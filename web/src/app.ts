@@ -165,9 +165,11 @@ export class App {
         this.bodies.build(shapes, otherScene);
         if (otherScene) this.structure.forget();
         const { twin } = this.player, { group } = this.twinBodies, was = group.visible;
-        if (twin && !was) this.twinBodies.build(shapes, true);
+        if (twin && !was) {
+            this.twinBodies.build(shapes, true);
+            this.placeTwin();
+        }
         group.visible = twin !== null;
-        if (twin) this.placeTwin();
         // Both futures are in the picture, and the one that is left again.
         const half = group.position.clone().multiplyScalar(0.5);
         if (twin && !was) this.stage.shift(half, besideFarther);

@@ -152,7 +152,7 @@ export const explainChecks = {
             ["explain-dark", "dark", address("distance", box, capsule, 3)],
         ];
         for (const [name, scheme, at] of pictures) {
-            const page = await open({ viewport: { width: 980, height: 560 }, colorScheme: scheme },
+            const page = await open({ viewport: { width: 1160, height: 560 }, colorScheme: scheme },
                 keeps ? at.replace("shadows=0", "shadows=2048") : at);
             await ready(page);
             await page.waitForTimeout(300);

@@ -23,10 +23,12 @@ export class View {
     private distance = 1;
     private goalDistance = 1;
     private orbit = firstOrbit();
+    private readonly lift: number; // of the height
     span = 1;
 
     // `shapes`: this is the picture of the shapes, which throw shadows.
     constructor(readonly canvas: HTMLCanvasElement, shadows: number, shapes: boolean) {
+        this.lift = shapes ? 0.09 : 0.02;
         this.stage = new Stage(canvas, shadows, false);
         this.drawing = new Drawing(canvas.parentElement!, shapes);
         this.stage.scene.add(this.drawing.group);
@@ -44,9 +46,11 @@ export class View {
         this.drawing.group.updateMatrixWorld(true);
     }
 
-    // Looks at what lies within the bounds; at once, or within some frames.
+    // Looks at what lies within the bounds; at once, or within some frames. The picture is a little higher than its
+    // middle: below are the fields.
     aim(bounds: THREE.Box3, atOnce: boolean): void {
-        const { stage } = this;
+        const { stage } = this, { clientWidth: width, clientHeight: height } = this.canvas;
+        stage.camera.setViewOffset(width, height, 0, this.lift * height, width, height);
         stage.frame(bounds, 0.3);
         this.span = stage.span;
         this.goal.copy(stage.controls.target);
