@@ -34,6 +34,7 @@ interface Label {
 export class Drawing {
     readonly group = new THREE.Group();
     readonly meshes = new Map<Solid, THREE.Mesh>(); // fronts of solids, to be met by rays
+    private readonly materials = new Map<string, THREE.Material>();
     private labels: Label[] = [];
     private pieces: Record<"rods" | "balls" | "tips", Piece[]> = { rods: [], balls: [], tips: [] };
     private unit = 1; // m of a pixel, or so
@@ -55,8 +56,7 @@ export class Drawing {
     }
     private clear(): void {
         this.group.traverse((object) => {
-            const { geometry, material } = object as THREE.Mesh;
-            if (material) (material as THREE.Material).dispose();
+            const { geometry } = object as THREE.Mesh;
             if (geometry && geometry !== rod && geometry !== ball && geometry !== tip) geometry.dispose();
             if (object instanceof THREE.InstancedMesh) object.dispose();
         });
@@ -65,6 +65,12 @@ export class Drawing {
         for (const { element } of this.labels) element.remove();
         this.labels = [];
         this.pieces = { rods: [], balls: [], tips: [] };
+    }
+    // Materials stay: what draws them would be compiled anew for every step otherwise.
+    private material(key: string, make: () => THREE.Material): THREE.Material {
+        const made = this.materials.get(key) ?? make();
+        this.materials.set(key, made);
+        return made;
     }
     private colour(ink: Ink): number {
         return inks[this.dark ? "dark" : "light"][ink];
@@ -93,19 +99,20 @@ export class Drawing {
         geometry = toCreasedNormals(geometry, solid.curved ? 0.6 : 0.02);
         const opacity = mark.faint ? 0.16 : mark.ink === Ink.difference ? 0.3 : 1.24 * mark.opacity;
         for (const side of [THREE.BackSide, THREE.FrontSide]) {
-            const mesh = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({
-                color: this.colour(mark.ink), emissive: this.colour(mark.ink), emissiveIntensity: 0.16,
-                roughness: 0.5, transparent: true, side, depthWrite: false,
-                opacity: side === THREE.BackSide ? 0.6 * opacity : opacity,
-            }));
+            const color = this.colour(mark.ink), thin = side === THREE.BackSide ? 0.6 * opacity : opacity;
+            const mesh = new THREE.Mesh(geometry, this.material(`solid ${side} ${color} ${thin}`, () =>
+                new THREE.MeshStandardMaterial({
+                    color, emissive: color, emissiveIntensity: 0.16, roughness: 0.5, transparent: true, side,
+                    depthWrite: false, opacity: thin,
+                })));
             mesh.renderOrder = side === THREE.BackSide ? 0 : 3;
             mesh.castShadow = this.casts && side === THREE.FrontSide;
             this.group.add(mesh);
             if (side === THREE.FrontSide) this.meshes.set(solid, mesh);
         }
-        const line = new THREE.LineSegments(edges, new THREE.LineBasicMaterial({
-            color: this.colour(mark.ink), transparent: true, opacity: mark.faint ? 0.35 : 0.8,
-        }));
+        const color = this.colour(mark.ink), thin = mark.faint ? 0.35 : 0.8;
+        const line = new THREE.LineSegments(edges, this.material(`line ${color} ${thin}`, () =>
+            new THREE.LineBasicMaterial({ color, transparent: true, opacity: thin })));
         line.renderOrder = 4;
         this.group.add(line);
     }
@@ -123,10 +130,12 @@ export class Drawing {
         geometry.setAttribute("position", new THREE.BufferAttribute(mark.points, 3));
         geometry.setIndex(fan);
         geometry.computeVertexNormals();
-        const mesh = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({
-            color: this.colour(mark.ink), roughness: 0.7, transparent: true, opacity: mark.opacity,
-            side: THREE.DoubleSide, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -1,
-        }));
+        const color = this.colour(mark.ink), { opacity } = mark;
+        const mesh = new THREE.Mesh(geometry, this.material(`face ${color} ${opacity}`, () =>
+            new THREE.MeshStandardMaterial({
+                color, roughness: 0.7, transparent: true, opacity, side: THREE.DoubleSide, depthWrite: false,
+                polygonOffset: true, polygonOffsetFactor: -1,
+            })));
         mesh.renderOrder = 2;
         this.group.add(mesh);
         for (let i = 0; i < count; ++i)
@@ -158,7 +167,8 @@ export class Drawing {
     }
     private addPieces(geometry: THREE.BufferGeometry, list: Piece[]): void {
         if (list.length === 0) return;
-        const { through } = this, material = new THREE.MeshStandardMaterial({ roughness: 0.45, transparent: through });
+        const { through } = this, material = this.material(`pieces ${through}`, () =>
+            new THREE.MeshStandardMaterial({ roughness: 0.45, transparent: through }));
         const mesh = new THREE.InstancedMesh(geometry, material, list.length);
         const colour = new THREE.Color();
         list.forEach(({ ink, matrix }, i) => {
