@@ -250,6 +250,13 @@ export class App {
         if (made instanceof Promise) made.then(taken, (error: Error) => this.say(error.message));
         else taken(made);
     }
+    // The point of the page that balls and boxes of buttons go to: the picture's middle, which between two futures is
+    // that of the one that can be played with.
+    get middle(): [number, number] {
+        const box = this.stage.canvas.getBoundingClientRect(), centre = new THREE.Vector3();
+        if (!this.player.twin) return [box.left + box.width / 2, box.top + box.height / 2];
+        return this.stage.project(this.bodies.measure(this.player.now).getCenter(centre).toArray());
+    }
     // A ball from the camera towards a point of the page.
     shoot(x: number, y: number): void {
         const ray = this.stage.ray(x, y), span = this.stage.span;

@@ -13,10 +13,7 @@ export function connect(app: App): void {
     const keys = element<HTMLDialogElement>("keys");
     // Where the pointer was last over the scene; balls and boxes go there, from buttons to the middle.
     let aim: [number, number] | null = null;
-    const middle = (): [number, number] => {
-        const box = canvas.getBoundingClientRect();
-        return [box.left + box.width / 2, box.top + box.height / 2];
-    };
+    const middle = () => app.middle;
     canvas.addEventListener("pointermove", (event) => (aim = [event.clientX, event.clientY]));
     canvas.addEventListener("pointerleave", () => (aim = null));
 
