@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "io/markup.h"
-#include "lendulet/shapes.h"
 
 namespace lendulet::explain {
 namespace {
@@ -17,33 +16,72 @@ struct Point {
     double x, y, depth;
 };
 
-// Along z, or from the right and above.
+// Along the third of the sequence's axes, or from the right and above.
 struct View {
+    const Sequence& sequence;
     bool oblique;
     double scale = 1.0;
     Point centre{0.0, 0.0, 0.0};
 
-    Point project(Vec p) const {
+    Point turned(Vec p) const {
         if (!oblique) return {p.x, p.y, p.z};
         constexpr double ca = 0.838671, sa = 0.544639, cb = 0.906308, sb = 0.422618;  // 33 and 25 degrees
         double x = ca * p.x - sa * p.z, z = sa * p.x + ca * p.z;
         return {x, cb * p.y - sb * z, sb * p.y + cb * z};
     }
+    Point project(Vec p, const Vec& from) const {
+        const auto& axes = sequence.axes;
+        p = p - from;
+        return turned({dot(p, axes[1]), dot(p, axes[2]), dot(p, axes[3])});
+    }
+    double depth(Vec direction) const { return project(direction, {}).depth; }
     Point at(Vec p) const {
-        Point q = project(p);
+        Point q = project(p, sequence.axes[0]);
         return {0.5 * panel + scale * (q.x - centre.x), 0.5 * panel - scale * (q.y - centre.y), q.depth};
     }
-    void fit(const std::vector<Step>& steps) {
+    std::vector<Point> all(const std::vector<Vec>& points) const {
+        std::vector<Point> out;
+        for (const Vec& p : points) out.push_back(at(p));
+        return out;
+    }
+    void fit() {
         double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
-        for (const Step& step : steps)
+        auto take = [&](const std::vector<Vec>& points) {
+            for (const Vec& p : points) {
+                Point q = project(p, sequence.axes[0]);
+                low[0] = std::min(low[0], q.x), high[0] = std::max(high[0], q.x);
+                low[1] = std::min(low[1], q.y), high[1] = std::max(high[1], q.y);
+            }
+        };
+        for (const Step& step : sequence.steps)
             for (const Mark& mark : step.marks)
-                for (const Vec& p : mark.points) {
-                    Point q = project(p);
-                    low[0] = std::min(low[0], q.x), high[0] = std::max(high[0], q.x);
-                    low[1] = std::min(low[1], q.y), high[1] = std::max(high[1], q.y);
-                }
+                take(mark.solid < 0 ? mark.points : sequence.solids[static_cast<size_t>(mark.solid)].corners);
         centre = {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.0};
         scale = 0.86 * panel / std::max({high[0] - low[0], high[1] - low[1], 1e-9});
+    }
+};
+
+// Of each ink.
+struct Colours {
+    const char *line, *fill, *faint_line, *faint_fill;
+};
+constexpr Colours colours[] = {
+    {"#000", "#000", "#000", "#000"},              // origin
+    {"#8a8a8a", "#e4e4e4", "#8a8a8a", "#e4e4e4"},  // difference
+    {"#2060c0", "#9db8e8", "#b8c8e8", "#e8eef8"},  // a
+    {"#208040", "#a8d8b0", "#b8d8c0", "#e8f6ea"},  // b
+    {"#d07000", "#f0b050", "#d07000", "#f0b050"},  // step
+    {"#c02020", "#c02020", "#c02020", "#c02020"},  // found
+};
+
+struct Style {
+    std::string line, fill;
+    double width, opacity;
+
+    explicit Style(const Mark& m) : width(m.width), opacity(m.opacity) {
+        const Colours& c = colours[static_cast<size_t>(m.ink)];
+        line = m.faint ? c.faint_line : c.line;
+        if (m.kind == Mark::Kind::solid || m.kind == Mark::Kind::face) fill = m.faint ? c.faint_fill : c.fill;
     }
 };
 
@@ -56,11 +94,11 @@ std::string attribute(const char* name, const std::string& value) {
     return value.empty() ? std::string() : std::string(" ") + name + "='" + value + "'";
 }
 
-std::string polygon(const std::vector<Point>& points, const Mark& m, bool closed) {
+std::string polygon(const std::vector<Point>& points, const Style& m, bool closed) {
     std::string out = closed ? "<polygon points='" : "<polyline points='";
     for (const Point& p : points) out += number(p.x) + "," + number(p.y) + " ";
     out += "'" + attribute("fill", m.fill.empty() ? "none" : m.fill) + attribute("fill-opacity", number(m.opacity));
-    return out + attribute("stroke", m.stroke) + attribute("stroke-width", number(m.width)) +
+    return out + attribute("stroke", m.line) + attribute("stroke-width", number(m.width)) +
            " stroke-linejoin='round'/>";
 }
 
@@ -85,63 +123,59 @@ std::vector<Point> outline(std::vector<Point> points) {
 }
 
 // Edges in front between faces of different slope, over the outline.
-std::string ridges(const Mark& m, const View& view) {
-    std::vector<Vec3> points;
-    for (const Vec& p : m.points)
-        points.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-    Result<ConvexHull> built = ConvexHull::from_points(points);
-    if (!built) return {};
-    const auto corners = built.value().vertices();
-    const std::vector<uint32_t> t = built.value().triangles();
+std::string ridges(const Solid& solid, Style thin, const View& view) {
+    const std::vector<Vec>& corners = solid.corners;
+    const std::vector<uint32_t>& t = solid.triangles;
     struct Edge {
         uint32_t from, to;
-        Vec3 normal;
+        Vec normal;
         bool front;
     };
     std::vector<Edge> edges;
     for (size_t i = 0; i < t.size(); i += 3) {
-        Vec3 n = normalize(cross(corners[t[i + 1]] - corners[t[i]], corners[t[i + 2]] - corners[t[i]]));
-        bool front = view.project(wide(n)).depth > 0.0;
+        Vec n = cross(corners[t[i + 1]] - corners[t[i]], corners[t[i + 2]] - corners[t[i]]);
+        n = (1.0 / std::max(std::sqrt(dot(n, n)), 1e-300)) * n;
+        bool front = view.depth(n) > 0.0;
         for (size_t k = 0; k < 3; ++k) edges.push_back({t[i + k], t[i + (k + 1) % 3], n, front});
     }
-    const float same = points.size() > 300 ? 0.8f : 0.99f;  // round ones are given by many points
-    Mark thin = m;
+    const double same = solid.curved ? 0.8 : 0.99;
     thin.fill.clear(), thin.width = 0.6;
     std::string out;
     for (const Edge& e : edges)
         for (const Edge& other : edges) {
             if (other.from != e.to || other.to != e.from || e.from > e.to || !(e.front || other.front)) continue;
             if (dot(e.normal, other.normal) > same) continue;
-            out += polygon({view.at(wide(corners[e.from])), view.at(wide(corners[e.to]))}, thin, false);
+            out += polygon({view.at(corners[e.from]), view.at(corners[e.to])}, thin, false);
         }
     return out;
 }
 
 std::string drawn(const Mark& m, const View& view) {
-    std::vector<Point> points;
-    for (const Vec& p : m.points) points.push_back(view.at(p));
+    const Style style(m);
+    const std::vector<Point> points = view.all(m.points);
     std::string out;
     switch (m.kind) {
-        case Mark::Kind::solid:
-            out = polygon(outline(points), m, true) + ridges(m, view);
-            break;
+        case Mark::Kind::solid: {
+            const Solid& solid = view.sequence.solids[static_cast<size_t>(m.solid)];
+            return polygon(outline(view.all(solid.corners)), style, true) + ridges(solid, style, view);
+        }
         case Mark::Kind::face:
-            out = polygon(points, m, true);
+            out = polygon(points, style, true);
             break;
         case Mark::Kind::path:
-            out = polygon(points, m, false);
+            out = polygon(points, style, false);
             break;
         case Mark::Kind::dot:
             out = "<circle cx='" + number(points[0].x) + "' cy='" + number(points[0].y) + "' r='" + number(m.width) +
-                  "' fill='" + m.fill + "'/>";
+                  "' fill='" + style.line + "'/>";
             break;
         case Mark::Kind::arrow: {
-            out = polygon(points, m, false);
+            out = polygon(points, style, false);
             double dx = points[1].x - points[0].x, dy = points[1].y - points[0].y, size = std::hypot(dx, dy);
             if (!(size > 4.0)) break;
             dx *= 7.0 / size, dy *= 7.0 / size;
-            Mark tip = m;
-            tip.fill = m.stroke;
+            Style tip = style;
+            tip.fill = tip.line;
             const Point& end = points[1];
             out += polygon({end,
                             {end.x - dx - 0.4 * dy, end.y - dy + 0.4 * dx, 0.0},
@@ -187,10 +221,11 @@ std::string document(const std::string& title, const std::vector<Step>& steps, s
 
 }  // namespace
 
-std::vector<std::string> documents(const std::string& title, const std::vector<Step>& steps, bool frames) {
-    View views[2] = {{false}, {true}};
-    for (View& v : views) v.fit(steps);
+std::vector<std::string> documents(const std::string& title, const Sequence& sequence, bool frames) {
+    View views[2] = {{sequence, false}, {sequence, true}};
+    for (View& v : views) v.fit();
     std::vector<std::string> out;
+    const std::vector<Step>& steps = sequence.steps;
     if (!frames) return {document(title, steps, 0, steps.size(), views)};
     for (size_t i = 0; i < steps.size(); ++i) out.push_back(document(title, steps, i, 1, views));
     return out;

@@ -1,8 +1,9 @@
-// Shapes from the command line.
+#include "explain/shapes.h"
+
 #include <charconv>
 #include <cmath>
+#include <vector>
 
-#include "explain/explain.h"
 #include "io/file.h"
 
 namespace lendulet::explain {

@@ -5,16 +5,6 @@
 
 namespace lendulet {
 
-std::string printable(std::string_view text) {
-    constexpr size_t longest = 200;
-    std::string out(text.substr(0, longest));
-    for (char& c : out) {
-        if (c < 0x20 || c > 0x7e) c = '?';
-    }
-    if (text.size() > longest) out += "...";
-    return out;
-}
-
 Result<std::string> read_file(const std::string& path, uint64_t limit) {
     auto refuse = [&](const std::string& why) { return Error{ErrorCode::io, printable(path) + ": " + why}; };
     // A name with a zero byte inside would be cut by the operating system and mean another file.

@@ -7,6 +7,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scenes/scene.h"
 
@@ -19,5 +21,9 @@ Result<Scene> load_gltf(const std::string& path, const Configure& configure = {}
 // The same from the bytes of a file; `directory` is where buffers beside it are looked for, `name` the scene's name.
 Result<Scene> load_gltf_bytes(std::string bytes, const std::string& directory, const std::string& name,
                               const Configure& configure = {});
+
+// The files beside the glTF file `path` to which it refers, buffers and pictures: as it names them, and their paths.
+// What is embedded, absolute or outside of its directory is left out, and so is everything of a file that is none.
+std::vector<std::pair<std::string, std::string>> files_of_gltf(const std::string& path);
 
 }  // namespace lendulet

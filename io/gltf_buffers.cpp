@@ -94,6 +94,11 @@ std::vector<unsigned char> read_data_uri(const Field& uri, uint64_t byte_length)
 
 }  // namespace
 
+std::string file_beside(const Field& uri, const std::string& directory) {
+    std::string path = checked_path(uri);
+    return directory.empty() ? path : directory + "/" + path;
+}
+
 GltfParts split_chunks(std::string_view file) {
     constexpr uint32_t chunk_json = 0x4e4f534a, chunk_bin = 0x004e4942;
     if (file.size() < 4 || std::memcmp(file.data(), "glTF", 4) != 0) return {file, {}, false};
@@ -132,8 +137,7 @@ std::vector<unsigned char> read_buffer(const Field& buffer, int index, const Glt
     } else if (uri.text().rfind("data:", 0) == 0) {
         return read_data_uri(uri, byte_length);
     } else {
-        std::string path = checked_path(uri);
-        Result<std::string> content = read_file(directory.empty() ? path : directory + "/" + path);
+        Result<std::string> content = read_file(file_beside(uri, directory));
         if (!content.ok()) refuse(uri.where(), content.error().message, ErrorCode::io);
         file = std::move(content).value();
         bytes = file;

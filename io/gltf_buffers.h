@@ -21,4 +21,7 @@ GltfParts split_chunks(std::string_view file);
 std::vector<unsigned char> read_buffer(const Field& buffer, int index, const GltfParts& parts,
                                        const std::string& directory);
 
+// The file in `directory` that a URI names, under the same rules.
+std::string file_beside(const Field& uri, const std::string& directory);
+
 }  // namespace lendulet

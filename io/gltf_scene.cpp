@@ -5,6 +5,7 @@
 
 #include "io/file.h"
 #include "io/gltf_bodies.h"
+#include "io/gltf_buffers.h"
 #include "io/gltf_container.h"
 #include "io/gltf_nodes.h"
 
@@ -54,7 +55,14 @@ Scene load(std::string bytes, const std::string& directory, const std::string& n
                 .before_step = {},
                 .warnings = warnings.take(),
                 .collider_names = std::move(bodies.collider_names)};
+    for (size_t i = 0; i < bodies.of_node.size(); ++i)
+        if (bodies.of_node[i] != BodyId{}) scene.nodes.emplace_back(static_cast<int>(i), bodies.of_node[i]);
     return scene;
+}
+
+std::string directory_of(const std::string& path) {
+    const size_t slash = path.rfind('/');
+    return slash == std::string::npos ? "" : slash == 0 ? "/" : path.substr(0, slash);
 }
 
 }  // namespace
@@ -78,9 +86,27 @@ Result<Scene> load_gltf_bytes(std::string bytes, const std::string& directory, c
 Result<Scene> load_gltf(const std::string& path, const Configure& configure) {
     Result<std::string> bytes = read_file(path);
     if (!bytes.ok()) return bytes.error();
-    size_t slash = path.rfind('/');
-    std::string directory = slash == std::string::npos ? "" : slash == 0 ? "/" : path.substr(0, slash);
-    return load_gltf_bytes(std::move(bytes).value(), directory, path, configure);
+    return load_gltf_bytes(std::move(bytes).value(), directory_of(path), path, configure);
+}
+
+std::vector<std::pair<std::string, std::string>> files_of_gltf(const std::string& path) {
+    std::vector<std::pair<std::string, std::string>> files;
+    Result<std::string> bytes = read_file(path);
+    if (!bytes.ok()) return files;
+    try {
+        const Json json = Json::parse(split_chunks(bytes.value()).json, nullptr, false);
+        const Field root(&json, "");
+        for (const char* list : {"buffers", "images"})
+            for (size_t i = 0; i < root[list].size(); ++i) {
+                const Field uri = root[list].at(i)["uri"];
+                if (!uri || uri.text().rfind("data:", 0) == 0) continue;
+                try {
+                    files.emplace_back(uri.text(), file_beside(uri, directory_of(path)));
+                } catch (const LoadFailure&) {  // the loader says it
+                }
+            }
+    } catch (const LoadFailure&) {}
+    return files;
 }
 
 }  // namespace lendulet

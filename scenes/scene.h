@@ -24,6 +24,7 @@ struct Scene {
     std::vector<std::string> warnings;                  // of loading
     // Names of colliders that differ from their body's: nodes of a file below a moving one.
     std::vector<std::pair<ColliderId, std::string>> collider_names{};
+    std::vector<std::pair<int, BodyId>> nodes{};  // of a glTF file that became bodies, by their numbers in it
 };
 
 struct SceneInfo {

@@ -1,13 +1,14 @@
-// Builds the static page: node build.mjs MODULE.wasm FOLDER
-// MODULE "-": without an engine of its own, for a native one behind the server.
+// Builds the static page: node build.mjs MODULES FOLDER
+// MODULES: the folder of lendulet_wasm.wasm and lendulet_explain.wasm.
+// MODULES "-": without an engine of its own, for a native one behind the server.
 import { build } from "esbuild";
 import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
-const [module, folder] = process.argv.slice(2);
+const [modules, folder] = process.argv.slice(2);
 if (!folder) {
-    console.error("usage: node build.mjs MODULE.wasm FOLDER");
+    console.error("usage: node build.mjs MODULES FOLDER");
     process.exit(2);
 }
 const here = fileURLToPath(new URL(".", import.meta.url));
@@ -22,12 +23,15 @@ await build({
     legalComments: "linked",
     logLevel: "warning",
 });
-for (const file of ["index.html", "style.css", "icon.svg"]) copyFileSync(join(here, file), join(folder, file));
-if (module !== "-") {
-    if (resolve(module) !== resolve(folder, "lendulet.wasm")) copyFileSync(module, join(folder, "lendulet.wasm"));
+for (const file of ["index.html", "style.css", "explain.css", "icon.svg"])
+    copyFileSync(join(here, file), join(folder, file));
+const made = { "lendulet.wasm": "lendulet_wasm.wasm", "lendulet_explain.wasm": "lendulet_explain.wasm" };
+if (modules !== "-") {
+    if (resolve(modules) !== resolve(folder))
+        for (const [file, from] of Object.entries(made)) copyFileSync(join(modules, from), join(folder, file));
 } else {
     const page = readFileSync(join(here, "index.html"), "utf8");
     const without = '<head>\n<meta name="lendulet-wasm" content="no">';
     writeFileSync(join(folder, "index.html"), page.replace("<head>", without));
-    for (const file of ["lendulet.wasm", "native-hashes.json"]) rmSync(join(folder, file), { force: true });
+    for (const file of [...Object.keys(made), "native-hashes.json"]) rmSync(join(folder, file), { force: true });
 }

@@ -1,16 +1,17 @@
 // Runs the page's scenes natively and writes their hashes for the page to compare with:
-// node hashes.mjs path/to/lendulet OUT.json
+// node hashes.mjs path/to/lendulet OUT.json [SCENE …]
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 
-const [program, out] = process.argv.slice(2);
+const [program, out, ...only] = process.argv.slice(2);
 if (!out) {
-    console.error("usage: node hashes.mjs path/to/lendulet OUT.json");
+    console.error("usage: node hashes.mjs path/to/lendulet OUT.json [SCENE …]");
     process.exit(2);
 }
 const table = JSON.parse(readFileSync(new URL("src/scenes.json", import.meta.url), "utf8"));
 const names = table
     .flatMap(({ scenes }) => Object.entries(scenes))
+    .filter(([name]) => only.length === 0 || only.includes(name))
     .map(([name, { size }]) => (size ? `${name}:${size}` : name));
 const steps = 120, hashes = {};
 for (const name of names) {

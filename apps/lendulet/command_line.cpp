@@ -131,11 +131,12 @@ void add_collision_options(CLI::App& command, bench::CollisionOptions& options) 
 }
 
 void add_explain_options(CLI::App& command, explain::Options& options) {
-    command.add_option("WHAT", options.what, "gjk, epa, clip or sat")->required();
-    command.add_option("A", options.a, "KIND:NUMBERS[@X,Y,Z[@RX,RY,RZ]], such as box:0.5,0.5,0.5@1,0,0@0,0,30")
+    command.add_option("WHAT", options.question.what, "gjk, epa, distance (both), clip or sat")->required();
+    command
+        .add_option("A", options.question.a, "KIND:NUMBERS[@X,Y,Z[@RX,RY,RZ]], such as box:0.5,0.5,0.5@1,0,0@0,0,30")
         ->required();
-    command.add_option("B", options.b, "the other shape")->required();
-    command.add_option("--simplex", options.simplex, "half-space (default) or barycentric")->type_name("NAME");
+    command.add_option("B", options.question.b, "the other shape")->required();
+    command.add_option("--simplex", options.question.simplex, "half-space (default) or barycentric")->type_name("NAME");
     command.add_option("--svg", options.svg, "the picture (default explain-WHAT.svg)")->type_name("FILE");
     command.add_flag("--frames", options.frames, "each step in a file of its own");
 }

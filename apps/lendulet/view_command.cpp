@@ -48,6 +48,20 @@ Result<std::string> read_recording(const std::string& scene) {
     return bytes;
 }
 
+// What the page draws of a glTF file: itself as "gltf", what lies beside it below that, as browsers ask for it.
+std::map<std::string, std::string> drawn_files(const std::string& scene) {
+    std::map<std::string, std::string> files{{"gltf", scene}};
+    for (auto& [uri, path] : files_of_gltf(scene)) {
+        std::string asked = "gltf/";
+        for (char c : uri) {
+            if (c == ' ') asked += "%20";
+            else asked += c;
+        }
+        files[asked] = path;
+    }
+    return files;
+}
+
 }  // namespace
 
 int view(const ViewOptions& options) {
@@ -73,8 +87,10 @@ int view(const ViewOptions& options) {
         // A wrong name is said here and not in the page.
         Result<Scene> scene = open("");
         if (!scene.ok()) return fail(scene.error().message);
+        if (is_gltf(options.scene)) server.files = drawn_files(options.scene);
         server.head = meta("lendulet-stream", is_gltf(options.scene) ? "" : options.scene) +
                       meta("lendulet-title", std::filesystem::path(options.scene).filename().string());
+        if (!server.files.empty()) server.head += meta("lendulet-gltf", "gltf");
     } else {
         server.head = meta("lendulet-recording", std::filesystem::path(options.scene).filename().string());
     }

@@ -25,6 +25,7 @@ TEST(Explain, EverySequenceIsDrawn) {
         {"gjk", "box:0.5,0.4,0.3", "capsule:0.4,0.2@1.3,0.6,0.2@0,0,40", "simplex 2"},
         {"gjk", "cylinder:0.4,0.3", "box:0.4,0.3,0.5@0.21,0.33,0.12@10,20,30", "the cores overlap"},
         {"epa", "hull:20,0.6", "box:0.4,0.4,0.4@0.5,0.3,0.2@30,20,10", "polytope 2"},
+        {"distance", "cone:0.4,0.3", "box:0.4,0.3,0.3@0.3,0.3,0.2", "polytope 1"},
         {"clip", "box:0.6,0.3,0.5", "box:0.4,0.3,0.4@0.4,0.59,0.2@0,30,0", "the manifold"},
         {"sat", "box:0.6,0.3,0.5", "box:0.4,0.3,0.4@0.4,0.59,0.2@0,30,10", "the axis of the contact"},
     };
@@ -62,7 +63,7 @@ void expect_explain_refuses(std::vector<std::string> arguments, const std::strin
 TEST(Explain, BadInputIsOneSentence) {
     const char *box = "box:1,1,1", *away = "box:1,1,1@5,0,0";
     expect_explain_refuses({"gjk", box}, "");
-    expect_explain_refuses({"magic", box, away}, "there are gjk, epa, clip, sat");
+    expect_explain_refuses({"magic", box, away}, "there are gjk, epa, distance, clip, sat");
     expect_explain_refuses({"gjk", "box", away}, "KIND:NUMBERS");
     expect_explain_refuses({"gjk", "box:1,1", away}, "there must be 3 numbers, not 2");
     expect_explain_refuses({"gjk", "box:1,1,x", away}, "\"x\" is no number");

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/lendulet/view/session.h"
+#include "io/gltf.h"
 
 namespace lendulet::cli {
 namespace {
@@ -111,12 +112,51 @@ TEST(Session, RefusesWithASentence) {
                           {{"do", {{{"do", "set"}, {"solverSteps", 0}}}}},
                           {{"do", {{{"do", "set"}, {"broadPhase", 99}}}}},
                           {{"do", {{{"do", "grab"}, {"body", 99}, {"point", {0, 0, 0}}}}}},
+                          {{"explain", "gjk"}},
+                          {{"explain", {{"what", "gjk"}, {"simplex", "half-space"}, {"a", "box:1,1,1"}}}},
+                          {{"explain", {{"what", "gjk"}, {"simplex", "fast"}, {"a", "box:1,1,1"}, {"b", "sphere:1"}}}},
                           {{"want", 3}},
                           {{"want", {"body"}}, {"body", "first"}}};
     for (const Json& request : wrong) EXPECT_NE(client.ask(request).error(), "") << request;
     Answer still = client.ask({{"want", {"poses", "nothing", 7}}});
     EXPECT_EQ(still.error(), "");
     EXPECT_EQ(still.state().steps, 0u);
+}
+
+// Counts and places within the block are those of its head, also without a world.
+TEST(Session, ExplainsTwoShapes) {
+    Client client;
+    Answer answer = client.ask(
+        {{"explain",
+          {{"what", "distance"}, {"simplex", "barycentric"}, {"a", "hull:20,0.6"}, {"b", "cone:0.5,0.4@0.3,0.4,0"}}}});
+    EXPECT_EQ(answer.error(), "");
+    ASSERT_TRUE(answer.has(Section::explain));
+    const std::string& bytes = answer.sections.at(Section::explain);
+    std::vector<uint32_t> words(bytes.size() / 4);
+    std::memcpy(words.data(), bytes.data(), 4 * words.size());
+    ASSERT_GT(words.size(), 6u);
+    const uint32_t solids = words[0], steps = words[1], marks = words[2], points = words[3], indices = words[4];
+    EXPECT_EQ(solids, 3u);
+    EXPECT_GT(steps, 3u);
+    ASSERT_EQ(bytes.size(), 4 * (6 + 5 * solids + 6 * steps + 10 * marks + 3 * points + indices) + words[5]);
+    uint32_t next = 0;
+    for (uint32_t s = 0; s < steps; ++s) {
+        const uint32_t* step = &words[6 + 5 * solids + 6 * s];
+        EXPECT_EQ(step[4], next);
+        next += step[5];
+        EXPECT_LE(step[2] + step[3], words[5]);
+    }
+    EXPECT_EQ(next, marks);
+    EXPECT_NE(bytes.find("polytope 1"), std::string::npos);
+}
+
+TEST(Session, NamesTheBodiesOfNodes) {
+    Session session([](const std::string&) { return load_gltf("scenes/files/meshes.gltf"); });
+    Answer answer = parse(session.answer(R"({"open": "", "want": ["nodes"]})"));
+    EXPECT_EQ(answer.error(), "");
+    std::vector<int32_t> pairs(answer.sections.at(Section::nodes).size() / 4);
+    std::memcpy(pairs.data(), answer.sections.at(Section::nodes).data(), 4 * pairs.size());
+    EXPECT_EQ(pairs, (std::vector<int32_t>{4, 0, 5, 1, 6, 2, 7, 3, 8, 4, 10, 5}));
 }
 
 TEST(Session, SurvivesWhatIsNoRequest) {

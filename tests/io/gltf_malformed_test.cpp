@@ -332,5 +332,23 @@ TEST(Files, AreCheckedBeforeTheyAreRead) {
     EXPECT_EQ(printable("a\nb\x01\xff"), "a?b??");
 }
 
+// What `lendulet view` hands out beside a file: nothing that the file may not name.
+TEST(GltfFiles, OnlyWhatLiesBelow) {
+    const std::string path = testing::TempDir() + "files_of.gltf";
+    ASSERT_TRUE(
+        write_file(path, R"({"buffers": [{"uri": "a%20b.bin"}, {"uri": "data:;base64,AA=="}, {}, {"uri": "../x"}],
+        "images": [{"uri": "wood/oak.png"}, {"uri": "/etc/passwd"}, {"uri": "file:x"}, {"uri": "wood/%2e%2e/../y"}]})"));
+    const auto files = files_of_gltf(path);
+    ASSERT_EQ(files.size(), 2u);
+    EXPECT_EQ(files[0].first, "a%20b.bin");
+    EXPECT_EQ(files[0].second, path.substr(0, path.rfind('/')) + "/a b.bin");
+    EXPECT_EQ(files[1].first, "wood/oak.png");
+    EXPECT_TRUE(files_of_gltf("scenes/files/no_such.gltf").empty());
+    ASSERT_TRUE(write_file(path, "[1, 2"));
+    EXPECT_TRUE(files_of_gltf(path).empty());
+    ASSERT_TRUE(write_file(path, R"({"buffers": [{"uri": 3}], "images": 4})"));
+    EXPECT_TRUE(files_of_gltf(path).empty());
+}
+
 }  // namespace
 }  // namespace lendulet::test

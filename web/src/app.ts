@@ -5,7 +5,7 @@ import { EngineStopped } from "./engine/wasi";
 import { type Command, Refused, type World } from "./engine/types";
 import { type Deed, Player } from "./player";
 import { Pointer, vector } from "./pointer";
-import { followedIn, titleOf } from "./scenes";
+import { followedIn, lookIn, titleOf } from "./scenes";
 import type { Sources } from "./sources";
 import { element } from "./ui/dom";
 import { Figures } from "./ui/figures";
@@ -18,9 +18,10 @@ import { ContactMarks } from "./view/marks";
 import type { Stage } from "./view/stage";
 import { Structure } from "./view/structure";
 import { type Colouring, colourings, dark, light, type Theme } from "./view/theme";
-import type { Visuals } from "./view/visuals";
+import { Visuals } from "./view/visuals";
 
-const firstScene = "mixed_pile:600";
+const firstScene = "domino_spiral:300";
+const besideFarther = 1.7; // times as far away the camera is where two futures stand side by side
 const ballSpeed = 22; // in radii of the scene a second, at most 40 m/s
 
 export class App {
@@ -31,6 +32,7 @@ export class App {
     colours: Colouring = "body";
     contacts = false;
     theme: Theme = light;
+    away = false; // something else is shown; time stands
     private readonly bodies = new Bodies();
     private readonly twinBodies = new Bodies();
     private readonly marks = new ContactMarks();
@@ -77,7 +79,7 @@ export class App {
         const frame = () => {
             if (this.stopped) return;
             requestAnimationFrame(frame);
-            if (this.player.world) this.guarded(() => this.frame());
+            if (this.player.world && !this.away) this.guarded(() => this.frame());
         };
         requestAnimationFrame(frame);
     }
@@ -123,21 +125,32 @@ export class App {
         this.list.mark(name);
         this.tuning.show(world.settings());
         this.stage.update(); // the camera's shape before it is placed
-        this.lookAtAll();
+        this.lookAtAll(lookIn(name));
         if (link.view) {
             this.stage.camera.position.fromArray(link.view);
             this.stage.controls.target.fromArray(link.view, 3);
             this.stage.controls.update();
         }
+        if (world.looks) void this.dress(world, scene);
         this.writeLink();
+    }
+    // Draws what the world's file shows, once it is there.
+    private async dress(world: World, name: string): Promise<void> {
+        try {
+            const visuals = await Visuals.read(world.looks!);
+            if (this.player.world === world) this.setVisuals(visuals);
+        } catch (error) {
+            this.say(`${name}: what collides is drawn (${(error as Error).message})`);
+        }
     }
     setSize(size: number): void {
         const name = this.player.sceneName.split(":")[0];
         const info = this.sources.scenes.find((s) => s.name === name);
         if (info) this.open(size >= 1 ? `${name}:${Math.round(size)}` : nameWithSize(info));
     }
-    lookAtAll(): void {
-        this.stage.frame(this.bodies.measure(this.player.picture.now));
+    // At a box, by its two corners, or at what moves.
+    lookAtAll(box?: number[]): void {
+        this.stage.frame(box ? new THREE.Box3().setFromArray(box) : this.bodies.measure(this.player.picture.now));
         this.dirty = true;
     }
 
@@ -151,10 +164,16 @@ export class App {
         }
         this.bodies.build(shapes, otherScene);
         if (otherScene) this.structure.forget();
-        const { twin } = this.player;
-        if (twin && !this.twinBodies.group.visible) this.twinBodies.build(shapes, true);
-        this.twinBodies.group.visible = twin !== null;
-        if (twin) this.placeTwin();
+        const { twin } = this.player, { group } = this.twinBodies, was = group.visible;
+        if (twin && !was) {
+            this.twinBodies.build(shapes, true);
+            this.placeTwin();
+        }
+        group.visible = twin !== null;
+        // Both futures are in the picture, and the one that is left again.
+        const half = group.position.clone().multiplyScalar(0.5);
+        if (twin && !was) this.stage.shift(half, besideFarther);
+        if (!twin && was && !otherScene) this.stage.shift(half.negate(), 1 / besideFarther);
         element("futures").hidden = twin === null;
         element("fork").setAttribute("aria-pressed", String(twin !== null));
         this.dirty = true;
@@ -231,6 +250,13 @@ export class App {
         if (made instanceof Promise) made.then(taken, (error: Error) => this.say(error.message));
         else taken(made);
     }
+    // The point of the page that balls and boxes of buttons go to: the picture's middle, which between two futures is
+    // that of the one that can be played with.
+    get middle(): [number, number] {
+        const box = this.stage.canvas.getBoundingClientRect(), centre = new THREE.Vector3();
+        if (!this.player.twin) return [box.left + box.width / 2, box.top + box.height / 2];
+        return this.stage.project(this.bodies.measure(this.player.now).getCenter(centre).toArray());
+    }
     // A ball from the camera towards a point of the page.
     shoot(x: number, y: number): void {
         const ray = this.stage.ray(x, y), span = this.stage.span;
@@ -285,7 +311,7 @@ export class App {
 
     private frame(): void {
         const now = performance.now();
-        this.player.advance((now - this.lastFrame) / 1000);
+        this.player.advance((now - this.lastFrame) / 1000); // what is more than a tenth of a second is left out
         this.lastFrame = now;
         this.draw();
         this.figures.countFrame();

@@ -2,22 +2,24 @@
 // `?ao=0` ambient occlusion, for machines that draw in software.
 import { App } from "./app";
 import { Engine } from "./engine/engine";
+import type { ExplainMode } from "./explain/mode";
+import { fileBytes } from "./engine/module";
 import { Sources } from "./sources";
 import { connect } from "./ui/controls";
 import { element } from "./ui/dom";
+import { connectExplain } from "./ui/explain";
 import { Stage } from "./view/stage";
 
 declare global {
     interface Window {
         lendulet?: App; // for scripts and tests, once the first scene stands
+        lenduletExplain?: ExplainMode; // once it has been opened
     }
 }
 
 async function loadEngine(): Promise<Engine | null> {
     if (!Sources.wantsEngine) return null;
-    const answer = await fetch("lendulet.wasm");
-    if (!answer.ok) throw new Error(`lendulet.wasm cannot be loaded (${answer.status})`);
-    return Engine.load(await answer.arrayBuffer());
+    return Engine.load(await fileBytes("lendulet.wasm"));
 }
 
 async function main(): Promise<void> {
@@ -27,9 +29,11 @@ async function main(): Promise<void> {
     const stage = new Stage(element<HTMLCanvasElement>("canvas"), shadows, occlusion);
     const app = new App(sources, stage);
     sources.lost = (sentence) => app.say(sentence);
+    const address = location.hash; // the app writes its own
     app.start();
     while (!app.player.world) await new Promise((done) => setTimeout(done, 10));
     connect(app);
+    connectExplain(app, shadows, address);
     element("loading").hidden = true;
     window.lendulet = app;
 }

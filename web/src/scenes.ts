@@ -6,6 +6,7 @@ interface Shown {
     title?: string;
     size?: number;
     follow?: string; // name of the body that the camera goes along with
+    look?: number[]; // the box, by its two corners, that is seen first; without: what moves
 }
 
 export const groups = table as unknown as { title: string; scenes: Record<string, Shown> }[];
@@ -21,6 +22,9 @@ export function sizeOf(name: string, engineSize: number): number {
 }
 export function followedIn(name: string): string | undefined {
     return shown.get(name)?.follow;
+}
+export function lookIn(name: string): number[] | undefined {
+    return shown.get(name)?.look;
 }
 export function isListed(name: string): boolean {
     return shown.has(name);

@@ -2,6 +2,7 @@
 import type { Engine } from "./engine/engine";
 import { RecordingWorld } from "./engine/recording";
 import { type Catalogue, Connection, StreamWorld } from "./engine/stream";
+import { type Explain, explainInPage } from "./explain/sequence";
 import { Refused, type World } from "./engine/types";
 
 const meta = (name: string) => document.querySelector<HTMLMetaElement>(`meta[name="${name}"]`)?.content ?? null;
@@ -56,6 +57,16 @@ export class Sources implements Catalogue {
         this.given = { name, make: () => this.openNative("") };
     }
 
+    // Null: nobody here can explain.
+    get explain(): Explain | null {
+        if (this.engine) return explainInPage;
+        if (!this.connection) return null;
+        return async (question) => {
+            if (!this.connection) throw new Refused("The native engine is gone.");
+            return this.connection.explain(question);
+        };
+    }
+
     // Throws Refused, or rejects, with the engine's sentence.
     open(scene: string): World | Promise<World> {
         if (this.native) return this.openNative(scene);
@@ -64,6 +75,6 @@ export class Sources implements Catalogue {
     }
     private openNative(scene: string): Promise<World> {
         if (!this.connection) throw new Refused("The native engine is gone.");
-        return StreamWorld.open(this.connection, scene);
+        return StreamWorld.open(this.connection, scene, scene === "" ? meta("lendulet-gltf") : null);
     }
 }

@@ -29,7 +29,7 @@ const frames = (page, count) => page.evaluate((count) => new Promise((done) => {
 }), count);
 
 // How many colours, and how much of the commonest one, a picture has.
-async function look(page, png) {
+export async function look(page, png) {
     return page.evaluate(async (base64) => {
         const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
         const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
@@ -43,9 +43,9 @@ async function look(page, png) {
 }
 
 export const checks = {
-    async "every scene moves, stays finite and has the native hash after 120 steps"({ open, native }) {
+    async "every scene moves, stays finite and has the native hash after 120 steps"({ open, native, scenes }) {
         const page = await open({ viewport: { width: 320, height: 200 } });
-        assert.ok(Object.keys(native.hashes).length >= 27);
+        assert.ok(Object.keys(native.hashes).length >= scenes);
         for (const [scene, hash] of Object.entries(native.hashes)) {
             const result = await run(page, scene, native.steps);
             assert.equal(result.step, native.steps, scene);
@@ -183,8 +183,8 @@ export const checks = {
             ["domino_spiral:300", 700, "body", "light"], ["brick_tower:20", 190, "body", "light"],
             ["hourglass:800", 330, "body", "light"], ["bridge:26", 330, "body", "light"],
             ["gear_train:5", 120, "body", "light"], ["walker", 200, "body", "light", "fit"],
-            ["ragdoll_avalanche:60", 150, "body", "light", "fit"], ["marble_machine:40", 480, "body", "dark"],
-            ["mixed_pile:600", 300, "body", "light", "fit"], ["ragdolls:24", 150, "body", "light"],
+            ["ragdoll_avalanche:60", 170, "body", "light"], ["marble_machine:40", 480, "body", "dark"],
+            ["mixed_pile:600", 300, "body", "light"], ["ragdolls:24", 150, "body", "light"],
             ["wall_ball:14", 75, "body", "light"], ["mesh_terrain:400", 200, "body", "light"],
             ["joint_grid:24", 110, "body", "light"], ["tumbler:9", 240, "speed", "dark"],
         ];
@@ -223,11 +223,10 @@ export const checks = {
             window.lendulet.setStructure({ boxes: "levels" });
         }, 1);
         await show("futures", "large_pyramid:12", 30, () => {
-            const app = window.lendulet, { camera, controls } = app.stage;
+            const app = window.lendulet;
             app.player.fork();
-            app.shoot(300, 200);
+            app.shoot(...app.stage.project([0, 4, 0]));
             document.getElementById("message").hidden = true;
-            camera.position.sub(controls.target).multiplyScalar(1.6).add(controls.target);
         }, 70);
         await show("joints", "ragdolls:6", 60, () => window.lendulet.setStructure({ joints: true }), 1);
     },

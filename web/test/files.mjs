@@ -108,7 +108,11 @@ export const fileChecks = {
         await page.evaluate(() => window.lendulet.change({ do: "set", solverSteps: 4 }));
         const { hash } = await steps(page, 20);
         const repro = await saved(page, () => page.click("#save-repro"));
-        const found = await until(page, () => location.hash.includes("deeds=") && location.href);
+        // The address follows within a second: until both deeds are in it.
+        const found = await until(page, () => {
+            const deeds = /deeds=([^&]*)/.exec(location.hash)?.[1] ?? "";
+            return atob(deeds.replaceAll("-", "+").replaceAll("_", "/")).includes("solverSteps") && location.href;
+        });
         const address = await found.jsonValue();
         await page.evaluate(() => window.lendulet.open("stack:3"));
         await drop(page, "again.json", repro);
@@ -122,6 +126,44 @@ export const fileChecks = {
             return { deeds: player.deeds.map((d) => [d.step, d.command.do]), bodies: player.now.length / 8 };
         });
         assert.deepEqual(again.deeds, [[15, "box"], [25, "set"]]);
+    },
+
+    async "files: a picture and a film are saved, and show the scene"({ open, look }) {
+        const page = await open({ ...wide, acceptDownloads: true }, "?shadows=0#scene=stack:4&paused=1");
+        const picture = await saved(page, () => page.click("#save-picture"));
+        assert.equal(picture.subarray(1, 4).toString(), "PNG");
+        const { colours, commonest } = await look(page, picture);
+        assert.ok(colours > 50 && commonest < 0.95, `${colours} colours, ${commonest} of one`);
+        await page.click("#film");
+        assert.equal(await page.getAttribute("#film", "aria-pressed"), "true");
+        await page.waitForTimeout(1500);
+        const film = await saved(page, () => page.click("#film"));
+        assert.equal(await page.getAttribute("#film", "aria-pressed"), "false");
+        assert.equal(film.readUInt32BE(0), 0x1a45dfa3, "no WebM");
+        // It plays, in the canvas's size, and its picture is not empty.
+        const shown = await page.evaluate(async (base64) => {
+            const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+            const video = document.createElement("video"), canvas = document.getElementById("canvas");
+            video.muted = true;
+            video.src = URL.createObjectURL(new Blob([bytes], { type: "video/webm" }));
+            await new Promise((done, fail) => {
+                video.onloadeddata = done;
+                video.onerror = () => fail(new Error(video.error.message));
+            });
+            const pen = new OffscreenCanvas(video.videoWidth, video.videoHeight).getContext("2d");
+            await video.play();
+            await new Promise((done) => {
+                video.onended = done;
+                video.ontimeupdate = () => video.currentTime > 0.7 && done();
+            });
+            pen.drawImage(video, 0, 0);
+            const { data } = pen.getImageData(0, 0, video.videoWidth, video.videoHeight);
+            const colours = new Set(new Uint32Array(data.buffer)).size;
+            const size = [canvas.width, canvas.height], film = [video.videoWidth, video.videoHeight];
+            return { size, film, colours };
+        }, film.toString("base64"));
+        assert.ok(shown.film.every((v, i) => Math.abs(v - shown.size[i]) <= 1), JSON.stringify(shown));
+        assert.ok(shown.colours > 50, JSON.stringify(shown));
     },
 
     async "settings change while the world runs, and rewinding goes back to the old ones"({ open }) {

@@ -1,9 +1,12 @@
 // Checks of the native stream: `lendulet view` and the page that it serves.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
+import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { request } from "node:http";
 import { connect } from "node:net";
 import { randomBytes } from "node:crypto";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 
 // Starts the program; resolves to { url, port, end, output, ended } once it says where it listens.
 export function startNative(program, folder, scene, ...options) {
@@ -110,6 +113,65 @@ export const nativeChecks = {
         await until(page, () => (window.lendulet.player.twin?.stepCount ?? 0) > 70);
         await page.context().close();
         assert.equal(await native.end(), 0);
+    },
+
+    async "native: what a glTF file shows is drawn, with pictures beside it, and no other file is served"({
+        open, program, folder,
+    }) {
+        const place = mkdtempSync(join(tmpdir(), "lendulet-"));
+        try {
+            // A crate and the ground, both with a picture, and a child that is only seen.
+            const positions = Float32Array.of(-1, 0, -1, 1, 0, -1, 1, 0, 1, -1, 0, 1);
+            const corners = Float32Array.of(0, 0, 1, 0, 1, 1, 0, 1), triangles = Uint16Array.of(0, 2, 1, 0, 3, 2);
+            const data = Buffer.concat([positions, corners, triangles].map((list) => Buffer.from(list.buffer)));
+            writeFileSync(join(place, "scene data.bin"), data);
+            const dot = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJg"
+                + "gg==";
+            mkdirSync(join(place, "textures"));
+            writeFileSync(join(place, "textures", "dot.png"), Buffer.from(dot, "base64"));
+            writeFileSync(join(place, "secret.png"), "no");
+            const collider = { geometry: { shape: 0 } };
+            const body = (motion) => ({ KHR_physics_rigid_bodies: { ...motion, collider } });
+            writeFileSync(join(place, "crate.gltf"), JSON.stringify({
+                asset: { version: "2.0" }, scene: 0, scenes: [{ nodes: [0, 1] }],
+                extensionsUsed: ["KHR_physics_rigid_bodies", "KHR_implicit_shapes"],
+                extensions: { KHR_implicit_shapes: { shapes: [{ type: "box", box: { size: [1, 1, 1] } }] } },
+                nodes: [
+                    { name: "ground", mesh: 0, extensions: body({}) },
+                    { name: "crate", translation: [0, 3, 0], children: [2], extensions: body({ motion: { mass: 2 } }) },
+                    { name: "lid", mesh: 0, translation: [0, 0.5, 0] },
+                ],
+                meshes: [{ primitives: [{ attributes: { POSITION: 0, TEXCOORD_0: 1 }, indices: 2, material: 0 }] }],
+                materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }],
+                textures: [{ source: 0 }], images: [{ uri: "textures/dot.png" }],
+                accessors: [
+                    { bufferView: 0, componentType: 5126, count: 4, type: "VEC3", min: [-1, 0, -1], max: [1, 0, 1] },
+                    { bufferView: 1, componentType: 5126, count: 4, type: "VEC2" },
+                    { bufferView: 2, componentType: 5123, count: 6, type: "SCALAR" },
+                ],
+                bufferViews: [[0, 48], [48, 32], [80, 12]].map(([byteOffset, byteLength]) =>
+                    ({ buffer: 0, byteOffset, byteLength })),
+                buffers: [{ byteLength: data.length, uri: "scene data.bin" }],
+            }));
+            const native = await startNative(program, folder, join(place, "crate.gltf"));
+            const page = await open({}, "?shadows=0#paused=1", native.url);
+            await until(page, () => window.lendulet?.visuals);
+            const drawn = await page.evaluate(() => {
+                const { visuals, bodies } = window.lendulet, pictures = [];
+                visuals.group.traverse(({ material }) => material && pictures.push(material.map?.image.width));
+                window.lendulet.frame();
+                return { parts: [...visuals.parts.keys()], hidden: [...bodies.hidden.keys()], pictures };
+            });
+            assert.deepEqual(drawn, { parts: [0, 1], hidden: [0, 1], pictures: [1, 1] });
+            for (const path of ["/gltf", "/gltf/scene%20data.bin", "/gltf/textures/dot.png"])
+                assert.equal(await get(native.port, path), 200, path);
+            for (const path of ["/gltf/secret.png", "/gltf/textures/../secret.png", "/gltf/", "/secret.png"])
+                assert.equal(await get(native.port, path), 404, path);
+            await page.context().close();
+            assert.equal(await native.end(), 0);
+        } finally {
+            rmSync(place, { recursive: true });
+        }
     },
 
     async "native: foreign pages and names are refused, and only the page's files are served"({ program, folder }) {

@@ -1,18 +1,21 @@
 // Tests of the page in a real browser: node test/run.mjs FOLDER [IMAGES [WORDS]]
 // FOLDER: the built page. IMAGES: where pictures are written to; "-" or none: they are only looked at.
-// WORDS: only checks whose names contain them.
+// WORDS: only checks whose names contain them; "quick": those that `./dev check web-quick` makes do with.
 // CHROMIUM in the environment names another browser than /usr/bin/chromium, LENDULET another program than
 // build/release/bin/lendulet.
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
-import { checks } from "./checks.mjs";
+import { checks, look } from "./checks.mjs";
+import { explainChecks } from "./explain.mjs";
 import { fileChecks } from "./files.mjs";
 import { nativeChecks } from "./native.mjs";
 import { serve } from "./server.mjs";
 
 const [folder, into = "-", words = ""] = process.argv.slice(2);
+const quick = words === "quick";
+const inQuick = ["every scene", "play,", "picking", "balls,", "files: glTF", "explain: a phone"];
 const images = into === "-" ? null : into;
 if (!folder) {
     console.error("usage: node test/run.mjs FOLDER [IMAGES [WORDS]]");
@@ -45,11 +48,13 @@ async function open(options = {}, address = "?shadows=0", url = server.url) {
 
 const program = process.env.LENDULET ?? fileURLToPath(new URL("../../build/release/bin/lendulet", import.meta.url));
 const tools = {
-    open, native, program, folder: resolve(folder), keeps: images !== null,
+    open, look, native, scenes: quick ? 5 : 27, program, folder: resolve(folder), keeps: images !== null,
     save: (name, bytes) => images && writeFileSync(join(images, name), bytes),
 };
 let failed = 0;
-const chosen = Object.entries({ ...checks, ...fileChecks, ...nativeChecks }).filter(([name]) => name.includes(words));
+const isChosen = (name) => (quick ? inQuick.some((start) => name.startsWith(start)) : name.includes(words));
+const all = Object.entries({ ...checks, ...explainChecks, ...fileChecks, ...nativeChecks });
+const chosen = all.filter(([name]) => isChosen(name));
 for (const [name, check] of chosen) {
     const start = Date.now();
     const took = () => `${((Date.now() - start) / 1000).toFixed(1).padStart(5)} s  ${name}`;

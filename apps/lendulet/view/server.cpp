@@ -65,7 +65,11 @@ const char* type_of(const std::string& name) {
                                                                     {".css", "text/css"},
                                                                     {".svg", "image/svg+xml"},
                                                                     {".wasm", "application/wasm"},
-                                                                    {".json", "application/json"}};
+                                                                    {".json", "application/json"},
+                                                                    {".png", "image/png"},
+                                                                    {".jpg", "image/jpeg"},
+                                                                    {".jpeg", "image/jpeg"},
+                                                                    {".webp", "image/webp"}};
     for (auto [end, type] : types)
         if (name.size() > std::string_view(end).size() && name.ends_with(end)) return type;
     return "application/octet-stream";
@@ -105,9 +109,11 @@ Response page(const Request& request, const Shared& shared) {
     std::string name = target == "/" ? "index.html" : target.substr(std::min<size_t>(1, target.size()));
     if (name == "recording" && !shared.options.recording.empty())
         return answer(request, http::status::ok, "application/octet-stream", shared.options.recording);
-    const std::string path = shared.options.folder + "/" + name;
+    const auto known = shared.options.files.find(name);
+    const bool given = known != shared.options.files.end();
+    const std::string path = given ? known->second : shared.options.folder + "/" + name;
     std::error_code error;
-    if (!is_plain(name) || !std::filesystem::is_regular_file(path, error))
+    if (!(given || is_plain(name)) || !std::filesystem::is_regular_file(path, error))
         return plain(http::status::not_found, "There is no such file.\n");
     Result<std::string> bytes = read_file(path);
     if (!bytes.ok()) return plain(http::status::not_found, "There is no such file.\n");

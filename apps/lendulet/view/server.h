@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 
 #include "apps/lendulet/view/session.h"
@@ -13,12 +14,13 @@
 namespace lendulet::cli {
 
 struct ServerOptions {
-    uint16_t port = 8080;   // 0: any that is free
-    std::string folder;     // of the page
-    std::string head;       // put into the page's <head>
-    std::string recording;  // bytes, served as "recording"; empty: none
-    double give_up = 0.0;   // s without any connection after which it ends; 0: never
-    bool any_port = false;  // another port where that one is taken
+    uint16_t port = 8080;                      // 0: any that is free
+    std::string folder;                        // of the page
+    std::string head;                          // put into the page's <head>
+    std::string recording;                     // bytes, served as "recording"; empty: none
+    std::map<std::string, std::string> files;  // what else is served: paths by the names under which it is asked for
+    double give_up = 0.0;                      // s without any connection after which it ends; 0: never
+    bool any_port = false;                     // another port where that one is taken
 };
 
 // Serves until it is interrupted or gives up. `ready(port)` is called once it listens, before anyone is answered.

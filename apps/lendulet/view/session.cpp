@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/lendulet/view/reply.h"
+#include "explain/flat.h"
 #include "io/file.h"
 
 namespace lendulet::cli {
@@ -40,6 +41,11 @@ struct Session::Request {
         for (size_t i = 0; good && i < 3; ++i) good = (*it)[i].is_number();
         if (!good) throw Refused{std::string(name) + " must be three numbers"};
         for (size_t i = 0; i < 3; ++i) out[i] = (*it)[i].get<float>();
+    }
+    const Json& object(const char* name) const {
+        auto it = json.find(name);
+        if (it == json.end() || !it->is_object()) throw Refused{std::string(name) + " must be an object"};
+        return *it;
     }
     const Json& list(const char* name) const {
         auto it = json.find(name);
@@ -108,6 +114,14 @@ std::string lists() {
     return out.dump();
 }
 
+template <class Request>
+std::string explained(const Request& asked) {
+    Result<explain::Sequence> made =
+        explain::sequence({asked.text("what"), asked.text("a"), asked.text("b"), asked.text("simplex")});
+    if (!made) throw typename Request::Refused{made.error().message};
+    return explain::flat(made.value());
+}
+
 void add_shapes(Reply& reply, lendulet_world* world) {
     add_names(reply, world->scene.world);
     add_list(reply, Section::bodies, world, lendulet_read_bodies);
@@ -116,8 +130,20 @@ void add_shapes(Reply& reply, lendulet_world* world) {
     for (uint32_t i = 0; lendulet_read_mesh(world, static_cast<int32_t>(i), &mesh) >= 0; ++i) reply.mesh(i, mesh);
 }
 
+void add_nodes(Reply& reply, lendulet_world* world) {
+    const World& w = world->scene.world;
+    std::vector<int32_t> pairs;
+    std::map<uint32_t, int32_t> place;  // in the list of bodies, by slot
+    for (int32_t i = 0; i < w.body_count(); ++i) place[w.body(i).index] = i;
+    for (auto [node, body] : world->scene.nodes)
+        if (auto it = place.find(body.index); it != place.end() && w.body(it->second) == body)
+            pairs.insert(pairs.end(), {node, it->second});
+    reply.list(Section::nodes, pairs.data(), pairs.size());
+}
+
 void add_wanted(Reply& reply, lendulet_world* world, const std::string& what, int body) {
     if (what == "shapes") return add_shapes(reply, world);
+    if (what == "nodes") return add_nodes(reply, world);
     if (what == "poses") return add_list(reply, Section::poses, world, lendulet_read_poses);
     if (what == "contacts") return add_list(reply, Section::contacts, world, lendulet_read_contacts);
     if (what == "joints") return add_list(reply, Section::joints, world, lendulet_read_joints);
@@ -257,6 +283,7 @@ std::string Session::answer(std::string_view text) {
         const Request request{json};
         try {
             perform(request);
+            if (request.has("explain")) reply.text(Section::explain, explained(Request{request.object("explain")}));
         } catch (const Request::Refused& refused) {
             reply.text(Section::error, refused.sentence);
         }

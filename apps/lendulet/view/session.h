@@ -9,6 +9,7 @@
 //   keep    key under which to keep a snapshot; forget: list of keys
 //   body    index of the body that is looked into
 //   world   1: all of this is for the fork, 0: for the world itself
+//   explain {what, simplex, a, b}: what the collision algorithms do with two shapes, as `lendulet explain` takes them
 //   want    list of what the answer is to hold, by the names in session.cpp
 // The answer is binary, little endian: u32 magic, u32 id, then sections, each u32 kind, u32 bytes, and the structures
 // of lendulet_c.h as they are in memory, padded to eight bytes. What is refused is in a section of its own, as a
@@ -50,8 +51,10 @@ enum class Section : uint32_t {
     groups,
     motions,
     settings,
-    names,  // of bodies that have one: u32 index, u32 bytes, the name, padded to four bytes
-    lists   // JSON: scenes, stages, choices
+    names,    // of bodies that have one: u32 index, u32 bytes, the name, padded to four bytes
+    lists,    // JSON: scenes, stages, choices
+    explain,  // see explain/flat.h
+    nodes     // pairs of i32: the node of the glTF file, its body
 };
 
 struct SessionState {

@@ -3,32 +3,26 @@
 import { bodyAt, collidersAt, hashText, jointsAt, putSettings, settingsAt, statisticsAt, vectorAt } from "./decode";
 import {
     type BodyState, boxStride, type Command, contactStride, groupStride, type Hit, type JointInfo, type Kept,
-    motionStride, poseStride, Refused, type SceneInfo, type Settings, type Shapes, type Statistics, type Surface,
-    type Vec3, type World,
+    type Looks, motionStride, poseStride, Refused, type SceneInfo, type Settings, type Shapes, type Statistics,
+    type Surface, type Vec3, type World,
 } from "./types";
-import { wasiImports } from "./wasi";
+import { Module } from "./module";
 
-type Call = (...values: (number | bigint)[]) => number;
-
-export class Engine {
+export class Engine extends Module {
     readonly scenes: SceneInfo[] = [];
     readonly stages: string[] = [];
     readonly choices: string[][] = []; // broad phases, simplex solvers, integrators
 
     static async load(source: BufferSource): Promise<Engine> {
-        const module = await WebAssembly.compile(source);
-        let instance: WebAssembly.Instance;
-        const memory = () => instance.exports.memory as WebAssembly.Memory;
-        instance = await WebAssembly.instantiate(module, { wasi_snapshot_preview1: wasiImports(module, memory) });
-        (instance.exports._initialize as () => void)();
-        return new Engine(instance.exports);
+        return new Engine(await Module.start(source));
     }
 
     // Arguments and results are passed through here.
     private readonly room: number;
     private static readonly roomBytes = 512;
 
-    private constructor(private readonly exports: WebAssembly.Exports) {
+    private constructor(exports: WebAssembly.Exports) {
+        super(exports);
         this.room = this.call("malloc", Engine.roomBytes);
         for (let i = 0; i < this.call("lendulet_scene_count"); ++i)
             this.scenes.push({
@@ -44,9 +38,6 @@ export class Engine {
         }
     }
 
-    call(name: string, ...values: (number | bigint)[]): number {
-        return (this.exports[name] as unknown as Call)(...values);
-    }
     // Calls that may be refused.
     checked(name: string, ...values: (number | bigint)[]): number {
         const result = this.call(name, ...values);
@@ -57,19 +48,6 @@ export class Engine {
         return this.text(this.call("lendulet_error"));
     }
 
-    get buffer(): ArrayBuffer {
-        return (this.exports.memory as WebAssembly.Memory).buffer;
-    }
-    get view(): DataView {
-        return new DataView(this.buffer);
-    }
-    text(at: number): string {
-        const bytes = new Uint8Array(this.buffer);
-        let end = at;
-        while (bytes[end]) ++end;
-        return new TextDecoder().decode(bytes.slice(at, end));
-    }
-
     // Addresses of the room, `slot` blocks of 32 bytes in; what is put there holds for the next call.
     place(slot: number): number {
         return this.room + 32 * slot;
@@ -78,20 +56,8 @@ export class Engine {
         new Float32Array(this.buffer, this.place(slot), values.length).set(values);
         return this.place(slot);
     }
-    // Runs an action with bytes in the module's memory.
-    with<T>(bytes: Uint8Array, action: (at: number) => T): T {
-        const at = this.call("malloc", Math.max(bytes.length, 1));
-        new Uint8Array(this.buffer, at, bytes.length).set(bytes);
-        try {
-            return action(at);
-        } finally {
-            this.call("free", at);
-        }
-    }
-
     create(scene: string): PageWorld {
-        const name = new TextEncoder().encode(scene + "\0");
-        const handle = this.with(name, (at) => this.call("lendulet_create_scene", at));
+        const handle = this.withTexts([scene], ([name]) => this.call("lendulet_create_scene", name));
         if (!handle) throw new Refused(this.error());
         return new PageWorld(this, handle);
     }
@@ -107,6 +73,7 @@ export class PageWorld implements World {
     readonly busy = false;
     arrived: (steps: number) => void = () => undefined;
     failed: (sentence: string) => void = () => undefined;
+    looks?: Looks;
 
     constructor(readonly engine: Engine, readonly handle: number) {}
     destroy(): void {

@@ -89,13 +89,11 @@ const plainPart: Part = {
     orientation: [0, 0, 0, 1], density: 1000, friction: -1, restitution: -1,
 };
 
-// `bodies` is filled with the body's index of each node that moves, or stands, with one.
-export function readGltf(
-    engine: Engine, bytes: Uint8Array, warnings: string[], bodies: Map<number, number>,
-): PageWorld {
-    const world = engine.createEmpty(9.81);
+export function readGltf(engine: Engine, bytes: Uint8Array<ArrayBuffer>, warnings: string[]): PageWorld {
+    const world = engine.createEmpty(9.81), bodies = new Map<number, number>();
     try {
         new Reader(new Document(bytes), world, warnings).read(bodies);
+        world.looks = { bytes: () => Promise.resolve(bytes), folder: "", bodies };
     } catch (error) {
         world.destroy();
         throw error;

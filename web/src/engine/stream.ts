@@ -1,9 +1,11 @@
 // A world of the native engine behind a WebSocket (`lendulet view`). The page asks, the engine answers with what the
 // page wants to show, and only then is it asked again: see apps/lendulet/view/session.h for what goes over the wire.
+import { type Question, type Sequence, sequenceAt } from "../explain/sequence";
 import { bodyAt, bytesOf, collidersAt, hashText, jointsAt, settingsAt, statisticsAt, vectorAt } from "./decode";
+import { fileBytes } from "./module";
 import {
-    type BodyState, type Collider, type Command, type Hit, type JointInfo, type Kept, poseStride, type SceneInfo,
-    type Settings, type Shapes, type Statistics, type Surface, type Vec3, type World,
+    type BodyState, type Collider, type Command, type Hit, type JointInfo, type Kept, type Looks, poseStride, Refused,
+    type SceneInfo, type Settings, type Shapes, type Statistics, type Surface, type Vec3, type World,
 } from "./types";
 
 const magic = 0x56444e4c;
@@ -11,7 +13,7 @@ const lookFor = 1000; // ms for which something that was asked for is sent with 
 
 enum Section {
     error = 1, state, poses, bodies, colliders, mesh, contacts, statistics, body, grab, joints, boxes, groups, motions,
-    settings, names, lists,
+    settings, names, lists, explain, nodes,
 }
 
 interface Asked {
@@ -24,6 +26,7 @@ interface Asked {
     go?: number;
     forget?: number[];
     body?: number;
+    explain?: Question;
     want?: string[];
 }
 type Sections = Map<Section, [at: number, bytes: number][]>;
@@ -71,6 +74,13 @@ export class Connection {
             done(JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, at, bytes))) as Catalogue);
         }));
     }
+    explain(question: Question): Promise<Sequence> {
+        return new Promise((done, fail) => this.ask({ explain: question }, ({ buffer, sections }) => {
+            const [error] = sections.get(Section.error) ?? [], [made] = sections.get(Section.explain) ?? [];
+            if (made) done(sequenceAt(buffer, made[0]));
+            else fail(new Refused(new TextDecoder().decode(new Uint8Array(buffer, ...error))));
+        }));
+    }
     private take(buffer: ArrayBuffer): void {
         const view = new DataView(buffer), sections: Sections = new Map();
         if (view.getUint32(0, true) !== magic) return this.socket.close();
@@ -108,16 +118,19 @@ export class StreamWorld implements World {
     private bodyState: BodyState | null = null;
     private grip: Vec3 | null = null;
     private nextKey = 1;
+    looks?: Looks;
 
     private constructor(private readonly connection: Connection, private readonly which: number) {}
 
-    // The scene of this name; "" is that of the command line. Rejects with the engine's sentence.
-    static open(connection: Connection, scene: string): Promise<StreamWorld> {
+    // The scene of this name; "" is that of the command line, `file`: the address of the glTF file that it is of.
+    // Rejects with the engine's sentence.
+    static open(connection: Connection, scene: string, file: string | null): Promise<StreamWorld> {
         const world = new StreamWorld(connection, 0);
         return new Promise((done, fail) => {
             world.failed = (sentence) => fail(new Error(sentence));
             world.arrived = () => done(world);
-            world.ask({ open: scene, want: ["shapes", "statistics", "settings"] }, 0);
+            if (file !== null) world.looks = { bytes: () => fileBytes(file), folder: `${file}/`, bodies: new Map() };
+            world.ask({ open: scene, want: ["shapes", "statistics", "settings", ...(file ? ["nodes"] : [])] }, 0);
         });
     }
     destroy(): void {
@@ -214,6 +227,10 @@ export class StreamWorld implements World {
         if (settings) this.set = settingsAt(buffer, settings[0]);
         if (body) this.bodyState = bodyAt(buffer, body[0]);
         if (grip) this.grip = grip[1] > 0 ? vectorAt(buffer, grip[0]) : null;
+        for (const [at, bytes] of sections.get(Section.nodes) ?? []) {
+            const pairs = new Int32Array(buffer, at, bytes / 4);
+            for (let i = 0; i < pairs.length; i += 2) this.looks?.bodies.set(pairs[i], pairs[i + 1]);
+        }
         const colliders = first(Section.colliders);
         if (colliders) this.readShapes(buffer, sections, colliders);
     }

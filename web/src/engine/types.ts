@@ -141,6 +141,13 @@ export interface Hit {
 // A call that was refused, with its sentence.
 export class Refused extends Error {}
 
+// The glTF file that a world comes from, which may show more than what collides.
+export interface Looks {
+    bytes: () => Promise<Uint8Array<ArrayBuffer>>;
+    folder: string; // address of the files beside it, "" where it has none
+    bodies: Map<number, number>; // the body of each node that is one
+}
+
 // State is that after the last step that has arrived: at once in the page, later over a stream. Lists may be views of
 // memory that hold until the next call; what has not arrived yet is empty.
 export interface World {
@@ -148,6 +155,7 @@ export interface World {
     readonly stepSize: number; // s
     readonly time: number;
     readonly stepCount: number;
+    readonly looks?: Looks;
     readonly hash: string; // sixteen hexadecimal digits, as `lendulet run` prints them; "" where it is not known
     readonly busy: boolean; // something that was asked for is still to come
     arrived: (steps: number) => void; // the state is another one, by so many steps

@@ -13,10 +13,7 @@ export function connect(app: App): void {
     const keys = element<HTMLDialogElement>("keys");
     // Where the pointer was last over the scene; balls and boxes go there, from buttons to the middle.
     let aim: [number, number] | null = null;
-    const middle = (): [number, number] => {
-        const box = canvas.getBoundingClientRect();
-        return [box.left + box.width / 2, box.top + box.height / 2];
-    };
+    const middle = () => app.middle;
     canvas.addEventListener("pointermove", (event) => (aim = [event.clientX, event.clientY]));
     canvas.addEventListener("pointerleave", () => (aim = null));
 
@@ -65,6 +62,7 @@ export function connect(app: App): void {
         c: () => setContacts(!app.contacts),
         f: () => app.lookAtAll(),
         k: () => app.toggleFork(),
+        e: () => (location.hash = element<HTMLAnchorElement>("explain-open").hash),
         d: () => app.toggleTheme(),
         "[": () => setSpeed(speed.selectedIndex - 1),
         "]": () => setSpeed(speed.selectedIndex + 1),
@@ -75,7 +73,7 @@ export function connect(app: App): void {
     window.addEventListener("keydown", (event) => {
         const target = event.target as HTMLElement;
         const typing = target.closest("input:not([type=range]), select, dialog");
-        if (typing || event.ctrlKey || event.metaKey || event.altKey) return;
+        if (app.away || typing || event.ctrlKey || event.metaKey || event.altKey) return;
         // Buttons and the timeline keep the keys that are theirs.
         if (event.key === " " && target.closest("button, a")) return;
         if (event.key.startsWith("Arrow") && target === timeline) return;

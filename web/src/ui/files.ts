@@ -3,7 +3,6 @@ import type { App } from "../app";
 import { readGltf } from "../engine/gltf";
 import { isRecording, RecordingWorld } from "../engine/recording";
 import { Refused } from "../engine/types";
-import { Visuals } from "../view/visuals";
 import { element } from "./dom";
 import { isDeeds } from "./permalink";
 import { download, Recorder, type Repro } from "./record";
@@ -57,16 +56,12 @@ export class Files {
     private openRecording(name: string, bytes: Uint8Array): void {
         this.app.openWith(name, () => new RecordingWorld(bytes));
     }
-    private openGltf(name: string, bytes: Uint8Array): void {
+    private openGltf(name: string, bytes: Uint8Array<ArrayBuffer>): void {
         const { engine } = this.app.sources;
         if (!engine) throw new Refused(`This page has no engine of its own: lendulet view ${name} shows the file.`);
-        const warnings: string[] = [], bodies = new Map<number, number>();
-        if (!this.app.openWith(name, () => readGltf(engine, bytes, warnings, bodies))) return;
+        const warnings: string[] = [];
+        if (!this.app.openWith(name, () => readGltf(engine, bytes, warnings))) return;
         if (warnings.length > 0) this.app.say(`${name}: ${warnings[0]}`);
-        const { world } = this.app.player;
-        Visuals.read(bytes, bodies).then(
-            (visuals) => this.app.player.world === world && this.app.setVisuals(visuals),
-            (error: Error) => this.app.say(`${name}: what collides is drawn (${error.message})`));
     }
     private openRepro(name: string, bytes: Uint8Array): void {
         let repro: Partial<Repro>;
@@ -129,6 +124,8 @@ export class Files {
             film.addEventListener("dataavailable", (event) => parts.push(event.data));
             film.addEventListener("stop", () => download(`${this.name}.webm`, new Blob(parts)));
             film.start();
+            // A scene that stands is drawn once for it.
+            requestAnimationFrame(() => this.app.stage.render());
             this.film = film;
         }
         button.setAttribute("aria-pressed", String(this.film !== null));

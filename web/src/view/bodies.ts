@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import { BodyType, type Collider, groupStride, poseStride, type Shapes, ShapeType } from "../engine/types";
 import { modelOf } from "./geometry";
-import { bodyMaterial, glassMaterial, groundMaterial } from "./materials";
+import { bodyMaterial, glassMaterial, groundMaterial, wallMaterial } from "./materials";
 import { type Colouring, colourOf, colourOfGroup, driven, highlight } from "./theme";
 
 interface Batch {
@@ -15,7 +15,9 @@ interface Batch {
 }
 
 // How colliders are drawn: what moves, what it stands on, and containers, into which one must see.
-type Kind = "body" | "ground" | "glass";
+type Kind = "body" | "ground" | "glass" | "wall";
+
+const materials = { ground: groundMaterial, glass: glassMaterial, wall: wallMaterial, body: bodyMaterial };
 
 function kindOf(c: Collider, name: string, parts: number): Kind {
     const type = c.bodyType;
@@ -23,7 +25,7 @@ function kindOf(c: Collider, name: string, parts: number): Kind {
     if (type === BodyType.kinematic) return name === "drum" && parts > 2 ? "glass" : "body";
     if (type === BodyType.dynamic) return "body";
     const wall = c.type === ShapeType.box && c.size[1] > 1.5 * Math.min(c.size[0], c.size[2]);
-    return wall ? "glass" : "ground";
+    return wall ? "wall" : "ground";
 }
 // Ground takes shadows; only what stands on it casts them.
 function isSmall(c: Collider): boolean {
@@ -77,12 +79,13 @@ export class Bodies {
             geometry = model ? model.make(shapes.surface) : new THREE.PlaneGeometry(2e3, 2e3);
             this.geometries.set(key, geometry);
         }
-        const material = { ground: groundMaterial, glass: glassMaterial, body: bodyMaterial }[kind]();
+        const material = materials[kind]();
+        const isClear = kind === "glass" || kind === "wall";
         const mesh = new THREE.InstancedMesh(geometry, material, colliders.length);
         mesh.instanceMatrix.setUsage(fixed ? THREE.StaticDrawUsage : THREE.DynamicDrawUsage);
         mesh.frustumCulled = false; // bounds change with every step
-        mesh.userData.glass = kind === "glass";
-        mesh.receiveShadow = kind !== "glass";
+        mesh.userData.glass = isClear;
+        mesh.receiveShadow = !isClear;
         mesh.castShadow = kind === "body" || (kind === "ground" && colliders.every(isSmall));
         const white = new THREE.Color(1, 1, 1);
         for (let i = 0; i < colliders.length; ++i) mesh.setColorAt(i, white);

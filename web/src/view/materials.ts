@@ -2,9 +2,17 @@
 import * as THREE from "three";
 
 export const gridColour = { value: new THREE.Color(0x888888) };
+export const groundReach = { value: 10 }; // radius of what is looked at, m
 
 export function bodyMaterial(): THREE.MeshStandardMaterial {
     return new THREE.MeshStandardMaterial({ roughness: 0.62, metalness: 0.02 });
+}
+
+// Straight walls, of which several stand behind each other.
+export function wallMaterial(): THREE.MeshStandardMaterial {
+    return new THREE.MeshStandardMaterial({
+        roughness: 0.6, metalness: 0, transparent: true, opacity: 0.07, depthWrite: false,
+    });
 }
 
 export function glassMaterial(): THREE.MeshStandardMaterial {
@@ -33,23 +41,46 @@ const gridCode = `
     diffuseColor.rgb = mix(diffuseColor.rgb, gridColour, gridUp * max(0.55 * gridOne, gridTen));
 `;
 
+// A slab that is much larger than what is looked at ends nowhere: it fades into the sky towards its edges.
+const fadeCode = `
+    #ifdef USE_FOG
+        float groundEdge = max(abs(slabPlace.x), abs(slabPlace.y));
+        gl_FragColor.rgb = mix(gl_FragColor.rgb, fogColor, smoothstep(0.3, 0.97, groundEdge));
+    #endif
+`;
+const edgeCode = `
+    vec2 slab = vec2(length(instanceMatrix[0].xyz), length(instanceMatrix[2].xyz));
+    slabPlace = min(slab.x, slab.y) > 1.6 * groundReach ? position.xz : vec2(0.0);
+`;
+
 export function groundMaterial(): THREE.MeshStandardMaterial {
     const material = new THREE.MeshStandardMaterial({ roughness: 0.95, metalness: 0, side: THREE.DoubleSide });
     material.onBeforeCompile = (shader) => {
         shader.uniforms.gridColour = gridColour;
+        shader.uniforms.groundReach = groundReach;
         shader.vertexShader = shader.vertexShader
-            .replace("#include <common>", "#include <common>\nvarying vec3 worldPlace;\nvarying float worldUp;")
+            .replace("#include <common>", `#include <common>
+                varying vec3 worldPlace;
+                varying float worldUp;
+                varying vec2 slabPlace;
+                uniform float groundReach;`)
             .replace(
                 "#include <project_vertex>",
                 `#include <project_vertex>
                 worldPlace = (modelMatrix * instanceMatrix * vec4(transformed, 1.0)).xyz;
-                worldUp = normalize(mat3(instanceMatrix) * objectNormal).y;`,
+                worldUp = normalize(mat3(instanceMatrix) * objectNormal).y;
+                ${edgeCode}`,
             );
         shader.fragmentShader = shader.fragmentShader
             .replace(
                 "#include <common>",
-                "#include <common>\nuniform vec3 gridColour;\nvarying vec3 worldPlace;\nvarying float worldUp;",
+                `#include <common>
+                uniform vec3 gridColour;
+                varying vec3 worldPlace;
+                varying float worldUp;
+                varying vec2 slabPlace;`,
             )
+            .replace("#include <fog_fragment>", `#include <fog_fragment>\n${fadeCode}`)
             .replace("#include <color_fragment>", `#include <color_fragment>\n${gridCode}`);
     };
     return material;

@@ -1,7 +1,7 @@
 // The stage: renderer, camera, light and what stands around the bodies.
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { gridColour } from "./materials";
+import { gridColour, groundReach } from "./materials";
 import { Occlusion } from "./occlusion";
 import type { Theme } from "./theme";
 
@@ -14,6 +14,13 @@ function beforeToneMapping(colour: THREE.Color): void {
     const offset = least < 0.04 ? Math.sqrt(least / 6.25) - least : 0.04;
     colour.setRGB(colour.r + offset, colour.g + offset, colour.b + offset);
 }
+
+// From where a scene of this size is seen first: what is flat from farther above.
+function firstSide(size: THREE.Vector3): THREE.Vector3 {
+    const height = size.y / Math.max(size.x, size.z, 1e-6);
+    return new THREE.Vector3(0.62, THREE.MathUtils.clamp(0.95 - 1.2 * height, 0.42, 0.95), 1).normalize();
+}
+const margin = 0.98; // of what is looked at: boxes are seldom full to their corners
 
 export class Stage {
     readonly scene = new THREE.Scene();
@@ -74,31 +81,52 @@ export class Stage {
         this.reach = reach;
         const fog = this.scene.fog as THREE.Fog | null;
         if (fog) {
-            fog.near = 12 * reach;
-            fog.far = 45 * reach;
+            fog.near = 8 * reach;
+            fog.far = 40 * reach;
         }
+        groundReach.value = reach;
         this.camera.near = reach / 300;
         this.camera.far = 120 * reach;
         this.camera.updateProjectionMatrix();
     }
 
-    // Looks at what lies within the bounds, from a little above.
-    frame(bounds: THREE.Box3): void {
+    // Looks at what lies within the bounds, from a little above. `least`: radius of the smallest thing that fills the
+    // picture, m.
+    frame(bounds: THREE.Box3, least = 1.2): void {
         const sphere = bounds.getBoundingSphere(new THREE.Sphere());
-        const radius = Math.min(Math.max(sphere.radius, 1.2), 400);
+        const radius = Math.min(Math.max(sphere.radius, least), 400);
         this.setReach(radius);
-        const half = (this.camera.fov * Math.PI) / 360;
-        const narrow = Math.atan(Math.tan(half) * Math.min(this.camera.aspect, 1));
-        const distance = (0.84 * radius) / Math.sin(narrow);
+        const side = firstSide(bounds.getSize(new THREE.Vector3()));
         this.controls.target.copy(sphere.center);
-        this.camera.position
-            .set(0.62, 0.42, 1)
-            .normalize()
-            .multiplyScalar(distance)
-            .add(sphere.center);
+        this.camera.position.copy(sphere.center).add(side);
+        this.camera.lookAt(sphere.center);
+        this.camera.position.copy(sphere.center).addScaledVector(side, this.distanceOf(bounds, 0.6 * least));
         this.controls.minDistance = radius / 40;
         this.controls.maxDistance = 12 * radius;
         this.controls.update();
+    }
+
+    // Moves what is looked at, and the camera with it, so many times as far away.
+    shift(by: THREE.Vector3, farther: number): void {
+        const { camera, controls } = this, away = camera.position.clone().sub(controls.target).multiplyScalar(farther);
+        controls.target.add(by);
+        camera.position.copy(controls.target).add(away);
+        controls.update();
+    }
+
+    // From how far the camera, turned as it is, sees the whole of a box around its centre, and at least so much.
+    private distanceOf(bounds: THREE.Box3, least: number): number {
+        const toCamera = new THREE.Matrix4().makeRotationFromQuaternion(this.camera.quaternion).invert();
+        const half = bounds.getSize(new THREE.Vector3()).multiplyScalar(0.5), corner = new THREE.Vector3();
+        const high = Math.tan((this.camera.fov * Math.PI) / 360), wide = high * this.camera.aspect;
+        let distance = 0;
+        for (let i = 0; i < 8; ++i) {
+            corner.set(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z);
+            corner.applyMatrix4(toCamera);
+            const [x, y] = [corner.x, corner.y].map((v) => Math.max(Math.abs(v), least));
+            distance = Math.max(distance, corner.z + Math.max(x / wide, y / high));
+        }
+        return margin * distance;
     }
 
     // Shadows fall around what moves.

@@ -17,7 +17,7 @@ export const light: Theme = {
 };
 export const dark: Theme = {
     dark: true, sky: 0x14181d, ground: 0x39414a, line: 0x59646f, sun: 0xffe9cf, sunStrength: 2.3,
-    hemisphere: [0xa9bcd6, 0x2c2a28, 1.2],
+    hemisphere: [0xb4c4da, 0x55504a, 1.75],
 };
 
 // Eight muted colours that stand beside each other well in both themes.

@@ -2,16 +2,15 @@
 // collide are then not drawn for those bodies.
 import * as THREE from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
-import { poseStride } from "../engine/types";
+import { type Looks, poseStride } from "../engine/types";
 import type { Bodies } from "./bodies";
 
 export class Visuals {
     readonly group = new THREE.Group();
     readonly parts = new Map<number, THREE.Group>(); // by body
 
-    // `bodies`: the body of each node that moves with one.
-    static async read(bytes: Uint8Array, bodies: Map<number, number>): Promise<Visuals> {
-        const { scene, parser } = await new GLTFLoader().parseAsync(bytes.slice().buffer, "");
+    static async read({ bytes, folder, bodies }: Looks): Promise<Visuals> {
+        const { scene, parser } = await new GLTFLoader().parseAsync((await bytes()).slice().buffer, folder);
         const visuals = new Visuals(), nodeOf = (object: THREE.Object3D) => parser.associations.get(object)?.nodes;
         scene.updateMatrixWorld(true);
         // The first object of each body is the node that is the body.
