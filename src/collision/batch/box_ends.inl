@@ -13,7 +13,7 @@ struct CrossingEdges {
     F name_a, name_b;
 };
 
-// Points beside the first one, in A's axes.
+// Points beside the first one, from the middle of the shape A, world axes.
 template <class F>
 struct EdgeEnds {
     Vec3T<F> position[4];
