@@ -79,7 +79,8 @@ TEST(Stability, PyramidOfBase20StandsForAMinute) {
     EXPECT_LE(stand.speed, 1e-2f);
 }
 
-// Boxes that land on each other turn fast and meet beside where they were nearest: it was 23 cm with points there alone.
+// Boxes that land on each other turn fast and meet beside where they were nearest: it was 23 cm with points there
+// alone.
 TEST(Stability, PileLandsWithoutDeepOverlaps) {
     Scene scene = build_scene("box_pile:1000").value();
     float deepest = 0.0f;
