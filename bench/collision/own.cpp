@@ -116,7 +116,7 @@ public:
             const int count = total - first < batch_capacity ? total - first : batch_capacity;
             for (int k = 0; k < count; ++k) {
                 lists_->a[k] = 2 * (first + k), lists_->b[k] = 2 * (first + k) + 1;
-                lists_->margin[k] = contact_margin, lists_->feature[k] = 0.0f;
+                lists_->margin[k] = contact_margin, lists_->way[k] = lists_->feature[k] = 0.0f;
             }
             BoxBatch batch = lists_->batch(frames_.data(), count);
             kernels_.collide_boxes(batch);

@@ -41,6 +41,7 @@ int collide_box_box(const CollidePair& pair, PairCache& cache, const CollideSett
     BoxLists<1, 1> lists;
     lists.a[0] = 0, lists.b[0] = 1;
     lists.margin[0] = pair.margin;
+    lists.way[0] = 0.0f;
     lists.feature[0] = static_cast<float>(cache.feature);
     BoxBatch batch = lists.batch(frames, 1);
     collide_boxes<1>(batch);

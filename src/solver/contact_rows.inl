@@ -56,7 +56,7 @@ struct alignas(64) ContactRow {
     F push_speed;      // fastest that overlap is undone
     F bounce_speed;    // -1, or hugely negative where e = 0: times a speed, the approach that only impacts handle
     F follow;          // share of the arms' motion that A's arm makes
-    Vec3T<F> overdue;  // angular impulse that the held impulses lack since the bodies moved; by relax
+    Vec3T<F> overdue;  // angular impulse that the held impulses lack since the bodies moved, unless they rest; by relax
     PatchPoint<F, P> p[P];
     [[no_unique_address]] PatchTurn<F, P> turn;
     // Read by relax alone.
@@ -509,7 +509,11 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
         sweep_normals<W, P, true>(c, A, B, t2, k, change);
         apply_normals<W, P, true>(c, A, B, IA, IB, t2, change);
     } else {
-        if (!fixed_a) c.overdue = cross(held_impulse<W, P>(c, t2), drift_b - drift_a);
+        if (!fixed_a) {
+            Vec3T<F> drift = drift_b - drift_a, moment = cross(held_impulse<W, P>(c, t2), drift);
+            auto moving = dot(drift, drift) > splat<F>(k.still_drift * k.still_drift);
+            c.overdue = select(moving, moment, zero_vector<F>());
+        }
         MovedArms<F> now = update_displacement<W, P>(c, states, t2);
         sweep_normals<W, P, false>(c, A, B, t2, k, change);
         apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);

@@ -17,6 +17,7 @@ struct SubstepConstants {
     float bias_rate;     // share of the overlap undone in a substep, divided by h
     float leak;          // share of the accumulated normal impulse given up in the biased pass
     float bounce_speed;  // slower impacts do not bounce, m/s
+    float still_drift;   // bodies that move less than this relative to each other rest on each other, m
     bool joints;         // whether there are any
     bool moved;          // bodies were displaced since the last relax or prepare: impacts shift them
     bool first, last;    // substep of the step

@@ -26,6 +26,7 @@ SubstepConstants substep_constants(const SolverSettings& settings) {
     k.bias_rate = contact_bias * k.inverse_h;
     k.leak = contact_leak;
     k.bounce_speed = bounce_threshold_substeps * settings.gravity * k.h + 1e-3f;
+    k.still_drift = settings.gravity * k.h * k.h;
     k.joints = k.moved = k.first = k.last = false;
     k.repeat_scale = k.end_scale = 1.0f;
     return k;

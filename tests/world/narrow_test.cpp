@@ -37,7 +37,8 @@ void fill(Boxes& boxes, Random& random, int count) {
     }
     for (int k = 0; k < count; ++k) {
         boxes.lists.a[k] = 2 * k, boxes.lists.b[k] = 2 * k + 1;
-        boxes.lists.margin[k] = 0.02f;
+        boxes.lists.margin[k] = k % 2 ? 0.3f : 0.02f;
+        boxes.lists.way[k] = k % 2 ? 0.25f : 0.0f;
         boxes.lists.feature[k] = static_cast<float>(k % 16);
     }
 }

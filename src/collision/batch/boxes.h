@@ -15,6 +15,7 @@ struct BoxBatch {
     int count;
     int32_t *a, *b;  // indices of frames
     float* margin;   // surfaces farther apart than this give no points, m
+    float* way;      // how far the boxes may come within the step, m; 0: points only where they are nearest now
     // In: 1 + the axis of the last contact, 0: none. Out: that of this one, where it was found by an axis.
     float* feature;
     float* clearance;    // out: the distance is at least this, m (the largest separation along an axis)
@@ -26,10 +27,10 @@ template <int Pairs, int Lanes>
 struct BoxLists {
     static constexpr int room = Pairs + Lanes;
     int32_t a[room], b[room], list[2][room];
-    float margin[room], feature[room], clearance[room];
+    float margin[room], way[room], feature[room], clearance[room];
     BatchManifold out[room];
     BoxBatch batch(const ShapeFrame* frames, int count) {
-        return {frames, count, a, b, margin, feature, clearance, out, {list[0], list[1]}};
+        return {frames, count, a, b, margin, way, feature, clearance, out, {list[0], list[1]}};
     }
 };
 

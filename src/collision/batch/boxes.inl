@@ -14,6 +14,9 @@ struct WideManifold {
     Vec3T<F> position[4];
     F separation[4], name[4];
 };
+
+#include "collision/batch/box_ends.inl"
+
 template <int W>
 LENDULET_FORCE_INLINE void store_manifolds(BatchManifold* out, const int32_t* index, const float* exchanged,
                                            const WideManifold<Wide<float, W>>& m) {
@@ -41,7 +44,7 @@ LENDULET_FORCE_INLINE void store_manifolds(BatchManifold* out, const int32_t* in
 template <int W>
 struct ListBlock {
     int32_t pair[W], first[W], second[W];
-    alignas(64) float margin[W], axis[W], exchanged[W];
+    alignas(64) float margin[W], way[W], axis[W], exchanged[W];
     LENDULET_FORCE_INLINE ListBlock(const BoxBatch& batch, const int32_t* list, int begin, int count) {
         for (int l = 0; l < W; ++l) {
             int32_t k = list[begin + l < count ? begin + l : count - 1];
@@ -51,6 +54,7 @@ struct ListBlock {
             first[l] = of_b ? batch.b[k] : batch.a[k];
             second[l] = of_b ? batch.a[k] : batch.b[k];
             margin[l] = batch.margin[k];
+            way[l] = batch.way[k];
             axis[l] = of_b ? number - 3.0f : number;
             exchanged[l] = of_b ? 1.0f : 0.0f;
         }
@@ -118,7 +122,7 @@ void edge_manifolds(BoxBatch& batch, const int32_t* list, int count) {
         F sb1 = zero - sign_of(dot(n, b1)), sb2 = zero - sign_of(dot(n, b2));
         Vec3T<F> on_a = (sa1 * ci.next(a.half)) * a1 + (sa2 * ci.last(a.half)) * a2;
         Vec3T<F> on_b = d + ((sb1 * cj.next(b.half)) * b1 + (sb2 * cj.last(b.half)) * b2);
-        Vec3T<F> gap = on_b - on_a;
+        Vec3T<F> gap = on_b - on_a, middle_a = on_a, middle_b = on_b;
         F cosine = dot(ea, eb), along_a = dot(ea, gap), along_b = dot(eb, gap);
         F inverse = one / maximum(one - cosine * cosine, splat<F>(1e-6f));
         F s = (along_a - cosine * along_b) * inverse, t = (cosine * along_a - along_b) * inverse;
@@ -134,12 +138,28 @@ void edge_manifolds(BoxBatch& batch, const int32_t* list, int count) {
         m.count = select(there, one, zero);
         m.position[0] = a.arm + half * (on_a + on_b);
         m.separation[0] = separation;
-        m.name[0] = name_of_point(BoxNames<F>::edge(i, sign_bit(sa1), sign_bit(sa2)),
-                                  BoxNames<F>::edge(j, sign_bit(sb1), sign_bit(sb2)));
+        F name_a = BoxNames<F>::edge(i, sign_bit(sa1), sign_bit(sa2));
+        F name_b = BoxNames<F>::edge(j, sign_bit(sb1), sign_bit(sb2));
+        m.name[0] = name_of_point(name_a, name_b);
         for (int q = 1; q < 4; ++q) {
             m.position[q] = zero_vector<F>();
             m.separation[q] = splat<F>(absent_separation);
             m.name[q] = zero;
+        }
+        const F way = select(there, load_wide<F>(block.way), zero);
+        if (mask_bits(way > zero) != 0) {
+            const CrossingEdges<F> edges{n,
+                                         middle_a,
+                                         middle_b,
+                                         ea,
+                                         eb,
+                                         ci.at(a.half),
+                                         cj.at(b.half),
+                                         {sa1 * a1, sa2 * a2},
+                                         {sb1 * b1, sb2 * b2},
+                                         name_a,
+                                         name_b};
+            append_ends(ends_of(edges, select(way > zero, way, splat<F>(lowest_score))), a.arm, m);
         }
         store_manifolds<W>(batch.out, block.pair, block.exchanged, m);
     }
@@ -154,11 +174,11 @@ void collide_boxes(BoxBatch& batch) {
         int live = batch.count - k < W ? batch.count - k : W;
         for (int l = live; l < W; ++l) {
             batch.a[k + l] = batch.a[k], batch.b[k + l] = batch.b[k];
-            batch.feature[k + l] = batch.margin[k + l] = 0.0f;
+            batch.feature[k + l] = batch.margin[k + l] = batch.way[k + l] = 0.0f;
         }
         WideBox<F> a = load_box<W>(batch.frames, batch.a + k), b = load_box<W>(batch.frames, batch.b + k);
-        BestAxis<F> best = best_axis(a, b, load_wide<F>(batch.feature + k));
         F margin = load_wide<F>(batch.margin + k);
+        BestAxis<F> best = best_axis(a, b, load_wide<F>(batch.feature + k), load_wide<F>(batch.way + k));
         uint32_t near = mask_bits(best.clearance <= margin) & ((1u << live) - 1u);
         uint32_t by_edge = mask_bits(best.axis >= splat<F>(6.0f));
         store_wide(batch.feature + k, best.axis + splat<F>(1.0f));

@@ -138,12 +138,24 @@ private:
             scratch_.boxed[k] = index;
             boxes.a[k] = motion.a[i], boxes.b[k] = motion.b[i];
             boxes.margin[k] = motion.margin[i];
+            boxes.way[k] = way_of(p, motion.margin[i]);
             boxes.feature[k] = world_.pairs.poses[index].feature;
         } else if (p.capacity == 1) {
             collide_single(p, index, motion.margin[i]);
         } else {
             collide_mesh(p, index, motion.margin[i]);
         }
+    }
+
+    // How far two boxes may come within the step, or 0 where that is no farther than where all get points. Those that
+    // bounce do so where they are nearest: at a point that is not yet there they would by a direction that is a guess.
+    float way_of(const ColliderPair& p, float margin) const {
+        const float near = minimum(world_.frames[p.a].near, world_.frames[p.b].near), way = margin - near;
+        if (way <= near) return 0.0f;
+        const ColliderStore& c = world_.colliders;
+        const float restitution = p.prepared > 0 ? world_.records[p.first_record].restitution
+                                                 : combine(c.surface[p.a], c.surface[p.b]).restitution;
+        return restitution > 0.0f ? 0.0f : way;
     }
 
     void keep(const ColliderPair& p, int i) {
