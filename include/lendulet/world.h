@@ -51,7 +51,7 @@ struct WorldConfig {
     SimplexSolver simplex = SimplexSolver::half_space;
     Integrator integrator = Integrator::momentum;
     int workers = 1;  // threads including the caller's, 1 .. 64
-    int width = 0;    // SIMD lanes 1, 4, 8 or 16; 0: the widest this machine has
+    int width = 0;    // SIMD lanes 1, 4, 8 or 16, or the most below that this machine has; 0: the most
     bool allow_sleep = true;
     bool continuous = true;  // fast bodies are stopped where they would pass through static and kinematic ones
     AllocatorHook allocator{};
