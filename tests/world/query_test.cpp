@@ -203,7 +203,7 @@ TEST(Queries, PointsAreInWhatContainsThem) {
     run(world, 60);
     Random random{4};
     int inside = 0;
-    for (int i = 0; i < scaled(600, 30); ++i) {
+    for (int i = 0; i < scaled(600, 120); ++i) {
         Position point = at(random.vector(-3.0f, 3.0f) + Vec3{0.0f, 1.5f, 0.0f});
         int count = 0;
         for_each(world,
