@@ -21,8 +21,8 @@
 
 namespace lendulet {
 
-// Memory of a world comes from here; the default is the C++ heap. `allocate` must give memory aligned to `alignment`
-// (a power of two up to 64) or null, which ends the program.
+// Memory of a world comes from here; the default is the heap (malloc). `allocate` must give memory aligned to
+// `alignment` (a power of two up to 64) or null, which ends the program.
 struct AllocatorHook {
     void* user = nullptr;
     void* (*allocate)(void* user, size_t bytes, size_t alignment) = nullptr;
@@ -118,7 +118,8 @@ struct Momentum {
     double angular[3];  // about the world's origin, kg m^2/s
 };
 
-// For World::reserve(). Counts of 0 to 16 777 216; contacts = 0: three for every body.
+// For World::reserve(). Counts of 0 to 16 777 216; contacts = 0: three for every body, and room for more that is not
+// touched.
 struct Capacity {
     int bodies = 0;    // moving ones, with one collider each
     int contacts = 0;  // pairs of colliders near each other

@@ -12,13 +12,17 @@
 
 namespace lendulet {
 
-// Where memory comes from; all null: the C++ heap. Mirrors the public AllocatorHook.
+// Where memory comes from; all null: the heap. Mirrors the public AllocatorHook.
 struct Memory {
     void* user = nullptr;
     void* (*allocate_hook)(void* user, size_t bytes, size_t alignment) = nullptr;
     void (*free_hook)(void* user, void* memory, size_t bytes, size_t alignment) = nullptr;
 
     void* allocate(size_t bytes) const;
+    // Memory of `bytes` with the first `used` bytes of what was `old_bytes` long, which may be null. On the heap large
+    // memory is not copied where the system can move its pages instead, and new pages cost what they cost when they are
+    // written to: an array that grows in the middle of a step does not make that step a slow one.
+    void* enlarge(void* old, size_t old_bytes, size_t used, size_t bytes) const;
     void free(void* memory, size_t bytes) const;
     static constexpr size_t alignment = 64;  // a cache line, and the widest vector
 };
@@ -70,13 +74,13 @@ public:
     void reserve(size_t n) {
         if (n > capacity_) grow(n);
     }
-    // Reserves, and writes to what is not in use: the system hands out memory page by page where it is touched first,
-    // which may take longer than all that is done with it.
+    // Reserves, and writes to what of it is not in use: the system hands out memory page by page where it is touched
+    // first, which may take longer than all that is done with it.
     void make_ready(size_t n) {
         constexpr size_t page = 4096;
         reserve(n);
         volatile auto* bytes = reinterpret_cast<unsigned char*>(data_);
-        for (size_t i = size_ * sizeof(T); i < capacity_ * sizeof(T); i += page) bytes[i] = 0;
+        for (size_t i = size_ * sizeof(T); i < n * sizeof(T); i += page) bytes[i] = 0;
     }
     void resize_unset(size_t n) {
         reserve(n);
@@ -121,10 +125,7 @@ private:
         size_t wanted = capacity_ + capacity_ / 2;
         if (wanted < n) wanted = n;
         if (wanted < 16) wanted = 16;
-        T* fresh = static_cast<T*>(memory().allocate(wanted * sizeof(T)));
-        if (size_) std::memcpy(static_cast<void*>(fresh), data_, size_ * sizeof(T));
-        release();
-        data_ = fresh;
+        data_ = static_cast<T*>(memory().enlarge(data_, capacity_ * sizeof(T), size_ * sizeof(T), wanted * sizeof(T)));
         capacity_ = wanted;
     }
     void release() {

@@ -68,27 +68,28 @@ void ColourSorter::end() {
     for (size_t k = 1; k < counts_.size(); ++k) counts_[k] += counts_[k - 1];
 }
 
-void ColourSchedule::colour(const ContactRecord* records, const uint32_t* list, int count, const SolverBodies& bodies) {
-    sorter_.begin(bodies.count, count, contact_classes, tiles);
+void ColourSchedule::colour(ColourSorter& sorter, const ContactRecord* records, const uint32_t* list, int count,
+                            const SolverBodies& bodies) const {
+    sorter.begin(bodies.count, count, contact_classes, tiles);
     for (int i = 0; i < count; ++i) {
         if (i + prefetch_distance < count) prefetch(&records[list[i + prefetch_distance]]);
         const ContactRecord& r = records[list[i]];
         bool moved_a = bodies.state[static_cast<size_t>(r.body_a)].inverse_mass > 0.0f;
-        sorter_.add(r.body_a, moved_a, r.body_b, true, class_of(r));
+        sorter.add(r.body_a, moved_a, r.body_b, true, class_of(r));
     }
-    sorter_.end();
+    sorter.end();
 }
 
 // Groups in solving order with their place in `order`. Room for four points that the last rows of a colour have left is
 // filled with manifolds of two: with points that are not there a row gives the same bits. How many must not depend on
 // the width.
-void ColourSchedule::make_groups(ContactExtra* extras) {
+void ColourSchedule::make_groups(const ColourSorter& sorter, ContactExtra* extras) {
     constexpr int whole = 16;
     int numbers[2][ColourSorter::colours], last_between = -1;
     for (auto& list : numbers)
         for (int& n : list) n = -1;
     int open_tile = -1;  // that of the last group, where that has room for more
-    sorter_.for_each_group([&](int tile, int colour, int c, uint32_t begin, uint32_t n) {
+    sorter.for_each_group([&](int tile, int colour, int c, uint32_t begin, uint32_t n) {
         const bool outside = tile == tiles.count;
         while (tile_ends.count() < tile) tile_ends.push_back(groups.count());
         if (outside && last_between >= 0 && colour != last_between) colour_ends.push_back(groups.count());
@@ -120,7 +121,7 @@ void ColourSchedule::make_groups(ContactExtra* extras) {
     if (last_between >= 0) colour_ends.push_back(groups.count());
 }
 
-void ColourSchedule::place_rows(const SolverKernels& kernels, const SolverKernels& scalar_kernels) {
+void ColourSchedule::measure_rows(const SolverKernels& kernels, const SolverKernels& scalar_kernels) {
     size_t bytes = 0;
     auto place = [&](size_t size) {  // an offset until there is memory
         auto* at = reinterpret_cast<std::byte*>(bytes);
@@ -133,27 +134,30 @@ void ColourSchedule::place_rows(const SolverKernels& kernels, const SolverKernel
         g.rows = place(table.row_bytes[row_class(g.points)] * blocks);
         g.rolling = place(g.extras ? table.rolling_bytes * blocks : 0);
     }
-    rows.resize_unset(bytes);
+    row_bytes = (bytes + Memory::alignment - 1) / Memory::alignment * Memory::alignment;
+}
+
+void ColourSchedule::place_rows(std::byte* rows) {
     for (ContactGroup& g : groups) {
-        g.rows = rows.data() + reinterpret_cast<size_t>(g.rows);
-        g.rolling = g.extras ? rows.data() + reinterpret_cast<size_t>(g.rolling) : nullptr;
+        g.rows = rows + reinterpret_cast<size_t>(g.rows);
+        g.rolling = g.extras ? rows + reinterpret_cast<size_t>(g.rolling) : nullptr;
     }
 }
 
-void ColourSchedule::build(const ContactRecord* records, ContactExtra* extras, const uint32_t* list, int count,
-                           const SolverBodies& bodies, Tiles cut, const SolverKernels& kernels,
-                           const SolverKernels& scalar_kernels) {
+void ColourSchedule::build(ColourSorter& sorter, const ContactRecord* records, ContactExtra* extras,
+                           const uint32_t* list, int count, const SolverBodies& bodies, Tiles cut,
+                           const SolverKernels& kernels, const SolverKernels& scalar_kernels) {
     groups.clear();
     tile_ends.clear();
     colour_ends.clear();
     colours = overflow = 0;
     tiles = keeps_together(records, list, count, cut) ? cut : Tiles{};
     order.resize_unset(static_cast<size_t>(count));
-    if (count > 0) colour(records, list, count, bodies);
-    if (count > 0) make_groups(extras);
+    if (count > 0) colour(sorter, records, list, count, bodies);
+    if (count > 0) make_groups(sorter, extras);
     while (tile_ends.count() < tiles.count) tile_ends.push_back(groups.count());
-    place_rows(kernels, scalar_kernels);
-    if (count > 0) sorter_.fill([&](uint32_t place, uint32_t i) { order[place] = list[i]; });
+    measure_rows(kernels, scalar_kernels);
+    if (count > 0) sorter.fill([&](uint32_t place, uint32_t i) { order[place] = list[i]; });
 }
 
 }  // namespace lendulet

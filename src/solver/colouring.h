@@ -38,14 +38,6 @@ public:
     // The next constraint, between two bodies of which at least one is moved.
     void add(int32_t a, bool moved_a, int32_t b, bool moved_b, int constraint_class);
     void end();
-    // See ColourSchedule.
-    void make_room(const ColourSorter& other) {
-        used_inside_.reserve(other.used_inside_.size());
-        used_between_.reserve(other.used_between_.size());
-        used_fixed_.reserve(other.used_fixed_.size());
-        keys_.reserve(keys_.size() + other.keys_.size());
-        counts_.reserve(other.counts_.size());
-    }
     // Takes memory for so many; before begin().
     void make_ready(size_t bodies, size_t constraints) {
         used_inside_.make_ready(bodies), used_between_.make_ready(bodies), used_fixed_.make_ready(bodies);
@@ -77,25 +69,40 @@ private:
     Tiles tiles_;
 };
 
+// Memory that the schedules of a step share, however its contacts are divided among them.
+struct ScheduleRoom {
+    ColourSorter sorter;    // of one after the other
+    Array<std::byte> rows;  // a part of it each
+
+    explicit ScheduleRoom(const Memory* memory) : sorter(memory), rows(memory) {}
+    // Takes memory for so many; before build(). `row_bytes`: of one contact.
+    void make_ready(size_t bodies, size_t contacts, size_t row_bytes) {
+        rows.make_ready((contacts + contacts / 8) * row_bytes);  // with empty lanes
+        sorter.make_ready(bodies, contacts);
+    }
+};
+
 struct ColourSchedule {
     Array<uint32_t> order;       // indices of records, by group
     Array<ContactGroup> groups;  // those of each tile in the order in which they are solved, then those between tiles
     Array<int> tile_ends;        // one past the last group of each tile
     Array<int> colour_ends;      // one past the last group of each colour between tiles: a barrier follows
-    Array<std::byte> rows;
     Tiles tiles;
-    int colours = 0;   // numbers of colours given, see ContactGroup
-    int overflow = 0;  // manifolds that share bodies: one lane, one thread
+    size_t row_bytes = 0;  // of all groups
+    int colours = 0;       // numbers of colours given, see ContactGroup
+    int overflow = 0;      // manifolds that share bodies: one lane, one thread
 
     explicit ColourSchedule(const Memory* memory)
-        : order(memory), groups(memory), tile_ends(memory), colour_ends(memory), rows(memory), sorter_(memory) {}
+        : order(memory), groups(memory), tile_ends(memory), colour_ends(memory) {}
 
     // Colours the `count` records that `list` names, all of bodies in these tiles, and takes the tiles for one where
     // too many lie between them. Where only one body of a record is moved, it is B. `extras`, by record, may be null
     // where no contact resists rolling.
-    void build(const ContactRecord* records, ContactExtra* extras, const uint32_t* list, int count,
-               const SolverBodies& bodies, Tiles cut, const SolverKernels& kernels,
+    void build(ColourSorter& sorter, const ContactRecord* records, ContactExtra* extras, const uint32_t* list,
+               int count, const SolverBodies& bodies, Tiles cut, const SolverKernels& kernels,
                const SolverKernels& scalar_kernels);
+    // Gives the groups their rows, `row_bytes` of memory aligned to Memory::alignment; after build(), once.
+    void place_rows(std::byte* rows);
     // Groups of a tile; of all that lies between tiles where `tile` is their count.
     int first_group(int tile) const { return tile == 0 ? 0 : tile_ends[static_cast<size_t>(tile) - 1]; }
     int last_group(int tile) const {
@@ -107,23 +114,13 @@ struct ColourSchedule {
         groups.reserve(groups.size() + other.groups.size());
         tile_ends.reserve(tile_ends.size() + other.tile_ends.size());
         colour_ends.reserve(colour_ends.size() + other.colour_ends.size());
-        rows.reserve(rows.size() + other.rows.size());
-        sorter_.make_room(other.sorter_);
-    }
-
-    // Takes memory for so many; before build(). `row_bytes`: of one contact.
-    void make_ready(size_t bodies, size_t contacts, size_t row_bytes) {
-        order.make_ready(contacts);
-        rows.make_ready((contacts + contacts / 8) * row_bytes);  // with empty lanes
-        sorter_.make_ready(bodies, contacts);
     }
 
 private:
-    void colour(const ContactRecord* records, const uint32_t* list, int count, const SolverBodies& bodies);
-    void make_groups(ContactExtra* extras);
-    void place_rows(const SolverKernels& kernels, const SolverKernels& scalar_kernels);
-
-    ColourSorter sorter_;
+    void colour(ColourSorter& sorter, const ContactRecord* records, const uint32_t* list, int count,
+                const SolverBodies& bodies) const;
+    void make_groups(const ColourSorter& sorter, ContactExtra* extras);
+    void measure_rows(const SolverKernels& kernels, const SolverKernels& scalar_kernels);
 };
 
 }  // namespace lendulet

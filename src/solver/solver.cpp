@@ -100,15 +100,20 @@ void Solver::pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepCo
     });
 }
 
-void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, const uint32_t* list,
-                     int count, Tiles tiles, ContactExtra* extras) {
+size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const ContactRecord* records,
+                        const uint32_t* list, int count, Tiles tiles, ContactExtra* extras) {
     extras_ = extras;
-    schedule_.build(records, extras, list, count, bodies, tiles, kernels_, scalar_);
+    schedule_.build(sorter, records, extras, list, count, bodies, tiles, kernels_, scalar_);
     bouncing_.clear();
     for (int i = 0; i < count; ++i) {
         if (i + prefetch_distance < count) prefetch(&records[list[i + prefetch_distance]].restitution);
         if (records[list[i]].restitution > 0.0f) bouncing_.push_back(list[i]);
     }
+    return schedule_.row_bytes;
+}
+
+void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, std::byte* rows) {
+    schedule_.place_rows(rows);
     for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
         kernels.prepare(g, records, bodies, begin, end);
     });

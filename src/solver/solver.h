@@ -43,20 +43,24 @@ public:
           kernels_(solver_kernels(width)),
           scalar_(solver_kernels(1)) {}
 
-    // Colours the manifolds that `list` names and packs them into rows. `extras`, by record: see ContactExtra; null
-    // where no material has any. `tiles`: how the bodies are cut that solve() is given.
-    void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, const uint32_t* list, int count,
-                 Tiles tiles = {}, ContactExtra* extras = nullptr);
-    // So that contacts of `other` may become this one's without asking for memory; before prepare().
+    // Colours the manifolds that `list` names. `extras`, by record: see ContactExtra; null where no material has any.
+    // `tiles`: how the bodies are cut that solve() is given. Returns the bytes of rows that prepare() is to be given.
+    size_t schedule(ColourSorter& sorter, const SolverBodies& bodies, const ContactRecord* records,
+                    const uint32_t* list, int count, Tiles tiles = {}, ContactExtra* extras = nullptr);
+    // Packs them into rows, memory aligned to Memory::alignment that must stay until store(). `records` as before.
+    void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, std::byte* rows);
+    // So that contacts of `other` may become this one's without asking for memory; before schedule().
     void make_room(const Solver& other) {
         schedule_.make_room(other.schedule_);
         bouncing_.reserve(bouncing_.size() + other.bouncing_.size());
     }
-    // Takes memory for so many entries of bodies, contacts of four points, and joints; before prepare().
+    // Takes memory for so many entries of bodies, contacts, and joints; before schedule().
     void make_ready(size_t bodies, size_t contacts, size_t joints) {
-        schedule_.make_ready(bodies, contacts, kernels_.row_bytes[2] / static_cast<size_t>(kernels_.width));
+        schedule_.order.make_ready(contacts);
         joints_.make_ready(bodies, joints);
     }
+    // Of a contact of four points, without empty lanes.
+    size_t largest_row() const { return kernels_.row_bytes[2] / static_cast<size_t>(kernels_.width); }
     // Colours the joints and packs them; after prepare() and with the same contacts, in every step. `joints` must stay
     // until store_joints(), and until the next call where that one reuses them.
     void prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joints, ContactList contacts,
@@ -72,7 +76,7 @@ public:
     // Writes impulses back into the joints given to prepare_joints().
     void store_joints(TaskPool& tasks) { joints_.store(tasks); }
 
-    // Calls visit(record, colour) for every contact that the last prepare() coloured.
+    // Calls visit(record, colour) for every contact that the last schedule() coloured.
     template <class Visit>
     void for_each_coloured(Visit&& visit) const {
         for (const ContactGroup& group : schedule_.groups)
@@ -81,7 +85,7 @@ public:
     int colour_count() const { return schedule_.colours; }
     int overflow() const { return schedule_.overflow; }
     const JointSolver& joints() const { return joints_; }
-    size_t row_bytes() const { return schedule_.rows.size(); }
+    size_t row_bytes() const { return schedule_.row_bytes; }
 
 private:
     // Calls run(kernels, group, begin, end) for all groups [first, last).

@@ -157,6 +157,7 @@ void match_pairs(WorldData& world) {
     if (world.all_pairs_sought) compare_all(world);
     for (const BoxPair& p : world.ended_pairs)
         if (uint32_t number = table.find(p.a, p.b); number != no_pair) end_pair(world, number);
+    if (!world.box_pairs.empty()) expect_contacts(world, world.moving_boxes.size());
     table.make_room(world.box_pairs.size());
     for (const BoxPair& p : world.box_pairs)
         if (wanted(world, p)) begin_pair(world, p);

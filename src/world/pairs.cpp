@@ -68,6 +68,13 @@ void PairTable::make_room(size_t more) {
     links_.reserve(2 * needed);
 }
 
+void PairTable::reserve(size_t n) {
+    pairs.reserve(n), caches.reserve(n), poses.reserve(n);
+    links_.reserve(2 * n);
+    for (Array<uint32_t>* numbers : {&free_, &ended_, &free_single_}) numbers->reserve(n);
+    for (Array<ListedPair>* list : {&listed, &coming_, &merged_}) list->reserve(n);
+}
+
 void PairTable::make_ready(size_t n) {
     pairs.make_ready(n), caches.make_ready(n), poses.make_ready(n);
     links_.make_ready(2 * n);
@@ -119,6 +126,8 @@ void PairTable::place_records(ColliderPair& pair, bool mesh) {
 
 void PairTable::place_surface(ColliderPair& pair) {
     if (free_surface_.empty()) {
+        if (near_triangles.size() == near_triangles.capacity())
+            near_triangles.reserve(std::min(first_.size(), most_expected));
         pair.surface = static_cast<uint32_t>(near_triangles.size());
         near_triangles.push_back(MeshCandidates{});
         free_surface_.reserve(pairs.capacity());

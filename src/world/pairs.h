@@ -18,6 +18,8 @@
 namespace lendulet {
 
 inline constexpr uint32_t no_pair = ~0u;
+// Colliders for whose contacts room is taken before there are any, at most.
+inline constexpr size_t most_expected = 1 << 15;
 
 // Which way a pair is collided.
 enum class PairKind : uint8_t {
@@ -83,7 +85,9 @@ public:
 
     // So that `more` pairs may begin at the cost of one enlargement.
     void make_room(size_t more);
-    // For so many pairs, each with one manifold.
+    // Room for so many pairs in all, not written to.
+    void reserve(size_t pairs);
+    // For so many pairs, each with one manifold, written to.
     void make_ready(size_t pairs);
     // A new pair of colliders a < b, which is listed; its number. Colliders from `colliders` on are unknown.
     uint32_t begin(uint32_t a, uint32_t b, size_t colliders);

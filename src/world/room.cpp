@@ -8,6 +8,9 @@ namespace lendulet {
 namespace {
 
 constexpr int contacts_per_body = 3;  // of a heap of boxes
+// Of bodies thrown together in a drum, the most of all scenes: boxes that overlap, and contacts found ahead.
+constexpr size_t pairs_in_drum = 12, contacts_in_drum = 8;
+constexpr size_t fewest_expected = 512;  // colliders: of fewer, arrays that grow cost nothing that could be seen
 constexpr int most = 1 << 24;
 constexpr size_t hard_contacts = 1024;
 
@@ -39,12 +42,34 @@ void make_contacts_ready(WorldData& world, size_t contacts) {
                world.active, world.active_bodies, world.first_loads, world.resting.place);
 }
 
+void reserve_records(WorldData& world, size_t contacts) {
+    world.records.reserve(contacts), world.found_separations.reserve(contacts), world.resting.place.reserve(contacts);
+}
+
 void make_joints_ready(WorldData& world, size_t joints) {
     JointStore& j = world.joints;
     make_ready(joints, j.info, j.impulses, j.record, world.movers.joints, world.active_joints, world.joint_records);
 }
 
 }  // namespace
+
+// Arrays that grow while a heap comes together would be copied, and all their new pages paid for, within one step: some
+// steps took four times the others. Memory that nothing was written to costs nearly nothing, and then comes page by
+// page as contacts do.
+void expect_contacts(WorldData& world, size_t colliders) {
+    colliders = std::min(colliders, most_expected);
+    if (colliders < fewest_expected || colliders <= world.expected) return;
+    world.expected = colliders;
+    world.pairs.reserve(pairs_in_drum * colliders);
+    const size_t contacts = contacts_in_drum * colliders;
+    reserve_records(world, contacts);
+    world.schedule_room.rows.reserve(contacts * world.solvers[0].largest_row());
+}
+
+void expect_mesh_contacts(WorldData& world) {
+    const size_t contacts = world.pairs.near_triangles.capacity() * max_mesh_manifolds;
+    if (contacts > 0) reserve_records(world, contacts + contacts_in_drum * std::min(world.expected, most_expected));
+}
 
 Status World::reserve(const Capacity& capacity) {
     WorldData& world = *data_;
@@ -59,9 +84,12 @@ Status World::reserve(const Capacity& capacity) {
     const auto bodies = static_cast<size_t>(capacity.bodies), joints = static_cast<size_t>(capacity.joints);
     const size_t contacts = capacity.contacts > 0 ? static_cast<size_t>(capacity.contacts) : contacts_per_body * bodies;
     if (bodies > 0) make_bodies_ready(world, bodies);
+    if (capacity.contacts > 0) world.expected = most_expected;  // who says it is taken at his word
+    else expect_contacts(world, bodies);
     if (contacts > 0) make_contacts_ready(world, contacts);
     if (joints > 0) make_joints_ready(world, joints);
     const size_t entries = world.solver_bodies.state.capacity();
+    world.schedule_room.make_ready(entries, contacts, world.solvers[0].largest_row());
     world.solvers[0].make_ready(entries, contacts, joints);
     // Small islands under load take more substeps: room for one of them.
     for (int c = 1; c < substep_classes; ++c)

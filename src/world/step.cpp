@@ -34,16 +34,25 @@ private:
 void prepare_solvers(WorldData& world, float dt) {
     JointReuse reuse = pack_joints(world, dt / static_cast<float>(world.config.solver_steps));
     const ContactRecord* records = world.records.data();
+    size_t bytes = 0, first[substep_classes];
     for (int c = substep_classes - 1; c >= 0; --c) {
         const SolverPart& part = world.parts[c];
-        ContactList contacts{records, world.active.data() + part.first_contact, part.contact_count, dt};
-        world.solvers[c].prepare(world.tasks, world.solver_bodies, records, world.active.data() + part.first_contact,
-                                 part.contact_count, Tiles(part.bodies),
-                                 world.has_extras ? world.extras.data() : nullptr);
-        JointList joints{world.joint_records.data() + part.first_joint, part.joint_count, world.joint_axes.data()};
-        world.solvers[c].prepare_joints(world.tasks, world.solver_bodies, joints, contacts, reuse);
+        first[c] = bytes;
+        bytes += world.solvers[c].schedule(world.schedule_room.sorter, world.solver_bodies, records,
+                                           world.active.data() + part.first_contact, part.contact_count,
+                                           Tiles(part.bodies), world.has_extras ? world.extras.data() : nullptr);
         // Islands go up by any number of classes and come down one by one, also long after all has come to rest.
         if (c > 0 && part.contact_count > 0) world.solvers[c - 1].make_room(world.solvers[c]);
+    }
+    Array<std::byte>& rows = world.schedule_room.rows;
+    rows.clear();
+    rows.resize_unset(bytes);
+    for (int c = 0; c < substep_classes; ++c) {
+        const SolverPart& part = world.parts[c];
+        ContactList contacts{records, world.active.data() + part.first_contact, part.contact_count, dt};
+        world.solvers[c].prepare(world.tasks, world.solver_bodies, records, rows.data() + first[c]);
+        JointList joints{world.joint_records.data() + part.first_joint, part.joint_count, world.joint_axes.data()};
+        world.solvers[c].prepare_joints(world.tasks, world.solver_bodies, joints, contacts, reuse);
     }
 }
 

@@ -106,6 +106,7 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       loaded(&memory),
       first_loads(&memory),
       parts{},
+      schedule_room(&memory),
       solvers{{&memory, settings.width},
               {&memory, settings.width},
               {&memory, settings.width},

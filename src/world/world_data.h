@@ -182,6 +182,8 @@ struct WorldData {
     Array<FirstLoad> first_loads;    // of this step
     SolverPart parts[substep_classes];
     int hard_bodies = 0;  // of classes above the setting's
+    ScheduleRoom schedule_room;
+    size_t expected = 0;  // colliders for whose contacts there is room, see expect_contacts()
     Solver solvers[substep_classes];
     Array<uint32_t> island_parent;  // union-find over body slots
     Array<float> island_still;
@@ -205,6 +207,10 @@ void find_box_pairs(WorldData& world);
 // The collider's box as the broad phase has it.
 const BroadBox& box_of(const WorldData& world, uint32_t collider);
 void match_pairs(WorldData& world);
+// Takes room for the contacts of so many moving colliders, before there are any.
+void expect_contacts(WorldData& world, size_t colliders);
+// The same for all pairs with meshes that there is room for.
+void expect_mesh_contacts(WorldData& world);
 void find_contacts(WorldData& world, float dt);
 void silence_seams(WorldData& world);
 // Tells by their flags which manifolds of a pair with a mesh the others silence, as long as they are kept.

@@ -55,7 +55,7 @@ inline JointRecord rig_joint(JointClass type, const std::vector<RigBody>& bodies
 class JointRig {
 public:
     explicit JointRig(int width = 8, int workers = 1)
-        : tasks_(workers), solver_bodies_(nullptr), solver_(nullptr, width) {}
+        : tasks_(workers), solver_bodies_(nullptr), room_(nullptr), solver_(nullptr, width) {}
 
     std::vector<RigBody> bodies;
     std::vector<JointRecord> joints;    // body_a and body_b are indices into `bodies`
@@ -79,7 +79,8 @@ public:
         std::vector<uint32_t> list(contacts.size());
         for (size_t i = 0; i < list.size(); ++i) list[i] = static_cast<uint32_t>(i);
         int count = static_cast<int>(contacts.size());
-        solver_.prepare(tasks_, solver_bodies_, contacts.data(), list.data(), count);
+        room_.rows.resize_unset(solver_.schedule(room_.sorter, solver_bodies_, contacts.data(), list.data(), count));
+        solver_.prepare(tasks_, solver_bodies_, contacts.data(), room_.rows.data());
         solver_.prepare_joints(tasks_, solver_bodies_,
                                {records_.data(), static_cast<int>(records_.size()), axes.data()},
                                {contacts.data(), list.data(), count, dt});
@@ -227,6 +228,7 @@ private:
 
     TaskPool tasks_;
     SolverBodies solver_bodies_;
+    ScheduleRoom room_;
     Solver solver_;
     std::vector<JointRecord> records_;
 };

@@ -352,6 +352,7 @@ void find_contacts(WorldData& world, float dt) {
     float h = dt / static_cast<float>(world.config.solver_steps);
     float scale = world.last_h > 0.0f ? h / world.last_h : 0.0f;
     world.last_h = h;
+    expect_mesh_contacts(world);
     world.records.resize_unset(world.pairs.record_count());
     world.found_separations.resize_unset(world.records.size());
     world.resting.place.resize_unset(world.records.size());
