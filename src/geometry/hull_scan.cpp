@@ -28,19 +28,45 @@ struct Found {
     uint32_t index;
 };
 
-// Largest dot product in [first, last), both multiples of 4. A first sweep finds the value, a second one where it
-// stands first: cheaper than carrying indices along, as it ends early.
+// The largest of 16 * blocks dot products, and where it stands first. All of them stay in registers or close by, so that
+// nothing is computed twice, and no branch depends on where the largest one is.
+template <int blocks>
+LENDULET_FORCE_INLINE Found scan_blocks(const std::vector<float>& xs, const std::vector<float>& ys,
+                                        const std::vector<float>& zs, uint32_t first, Vec3T<F> d) {
+    F value[4 * blocks];
+    for (int i = 0; i < 4 * blocks; ++i) value[i] = dot(load(xs, ys, zs, first + 4 * static_cast<uint32_t>(i)), d);
+    F top[4] = {value[0], value[1], value[2], value[3]};
+    for (int i = 4; i < 4 * blocks; ++i) top[i % 4] = maximum(value[i], top[i % 4]);
+    const float best = largest_lane(maximum(maximum(top[0], top[1]), maximum(top[2], top[3])));
+    const F wanted = splat<F>(best);
+    uint64_t hits = 0;
+    for (int i = 0; i < 4 * blocks; ++i) hits |= static_cast<uint64_t>(mask_bits(value[i] == wanted)) << (4 * i);
+    // No hit: the direction is not finite.
+    return {best, hits != 0 ? first + static_cast<uint32_t>(std::countr_zero(hits)) : first};
+}
+
+// Largest dot product in [first, last), both multiples of 16.
 LENDULET_FORCE_INLINE Found scan(const std::vector<float>& xs, const std::vector<float>& ys,
                                  const std::vector<float>& zs, uint32_t first, uint32_t last, Vec3T<F> d) {
-    F best = splat<F>(-infinity);
-    for (uint32_t i = first; i < last; i += 4) best = maximum(dot(load(xs, ys, zs, i), d), best);
-    float value = largest_lane(best);
-    F wanted = splat<F>(value);
-    for (uint32_t i = first; i < last; i += 4) {
-        uint32_t hits = mask_bits(dot(load(xs, ys, zs, i), d) == wanted);
-        if (hits != 0) return {value, i + static_cast<uint32_t>(std::countr_zero(hits))};
+    Found best{-infinity, first};
+    for (; first < last; first += 64) {
+        Found found;
+        switch (last - first) {
+            case 16:
+                found = scan_blocks<1>(xs, ys, zs, first, d);
+                break;
+            case 32:
+                found = scan_blocks<2>(xs, ys, zs, first, d);
+                break;
+            case 48:
+                found = scan_blocks<3>(xs, ys, zs, first, d);
+                break;
+            default:
+                found = scan_blocks<4>(xs, ys, zs, first, d);
+        }
+        if (found.value > best.value) best = found;
     }
-    return {value, first};  // direction not finite
+    return best;
 }
 
 // Upper bounds of the dot products within four clusters.
@@ -65,13 +91,13 @@ Found scan_clusters(const HullData& hull, Vec3T<F> d) {
         if (top[k] > top[lane]) lane = k;
     auto start = static_cast<uint32_t>(where[lane]);
     if (start >= c.count) start = 0;
-    Found best = scan(hull.xs, hull.ys, hull.zs, 16 * start, 16 * start + 16, d);
+    Found best = scan_blocks<1>(hull.xs, hull.ys, hull.zs, 16 * start, d);
     for (uint32_t i = 0; i < c.count; i += 4) {
         uint32_t open = mask_bits(cluster_bounds(c, i, d, size) >= splat<F>(best.value));
         for (; open != 0; open &= open - 1) {
             uint32_t k = i + static_cast<uint32_t>(std::countr_zero(open));
             if (k == start || k >= c.count) continue;
-            Found found = scan(hull.xs, hull.ys, hull.zs, 16 * k, 16 * k + 16, d);
+            Found found = scan_blocks<1>(hull.xs, hull.ys, hull.zs, 16 * k, d);
             if (found.value > best.value || (found.value == best.value && found.index < best.index)) best = found;
         }
     }
