@@ -37,12 +37,16 @@ inline Vec3d support_point(const Geometry& g, Vec3d d) {
             double at_p = dot(d, p), at_q = dot(d, q), at_r = dot(d, r);
             return at_p >= at_q && at_p >= at_r ? p : at_q >= at_r ? q : r;
         }
-        default: {
+        case GeometryKind::hull: {
             // Out of the range of float products (near contact v can be 1e-30 m long) only the direction is kept.
             double m = largest_component(d);
             if (m < 1e-12 || m > 1e12) d = (m > 0.0 ? 1.0 / m : 0.0) * d;
-            return to_double(support_core(g, to_float(d)));
+            Vec3 corner = g.hull->vertices[support_vertex(*g.hull, to_float(d))];
+            if (g.size.x != 0.0f) corner = corner - g.size.x * (corner - g.hull->centroid);
+            return to_double(corner);
         }
+        default:
+            return {};
     }
 }
 
