@@ -1,4 +1,5 @@
-// Searches over the vertices and faces of a hull: support points, best faces and extents, four lanes at a time.
+// Searches over the vertices and faces of a hull: support points, best faces and extents, four lanes at a time,
+// or eight where the machine has them.
 //
 // The result is that of a plain loop over all of them in order, to the bit: lanes compute the same products and sums,
 // the largest value is exact, and of equal ones the first is taken.
@@ -7,66 +8,29 @@
 #include <limits>
 
 #include "geometry/hull.h"
+#include "math/wide/instruction_sets.h"
 #include "math/wide/wide.h"
 
 namespace lendulet {
 
+// Eight lanes at a time, in hull_scan_avx2.cpp.
+uint32_t farthest_avx2(const float* xs, const float* ys, const float* zs, uint32_t count, Vec3 d);
+
 namespace {
 
+#include "geometry/hull_scan.inl"
+
 using F = Wide<float, 4>;
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 Vec3T<F> load(const std::vector<float>& xs, const std::vector<float>& ys, const std::vector<float>& zs, uint32_t i) {
     return {load_wide<F>(&xs[i]), load_wide<F>(&ys[i]), load_wide<F>(&zs[i])};
 }
 
-float largest_lane(F a) { return maximum(maximum(a[0], a[1]), maximum(a[2], a[3])); }
 float smallest_lane(F a) { return minimum(minimum(a[0], a[1]), minimum(a[2], a[3])); }
 
-struct Found {
-    float value;
-    uint32_t index;
-};
-
-// The largest of 16 * blocks dot products, and where it stands first. All of them stay in registers or close by, so that
-// nothing is computed twice, and no branch depends on where the largest one is.
-template <int blocks>
-LENDULET_FORCE_INLINE Found scan_blocks(const std::vector<float>& xs, const std::vector<float>& ys,
-                                        const std::vector<float>& zs, uint32_t first, Vec3T<F> d) {
-    F value[4 * blocks];
-    for (int i = 0; i < 4 * blocks; ++i) value[i] = dot(load(xs, ys, zs, first + 4 * static_cast<uint32_t>(i)), d);
-    F top[4] = {value[0], value[1], value[2], value[3]};
-    for (int i = 4; i < 4 * blocks; ++i) top[i % 4] = maximum(value[i], top[i % 4]);
-    const float best = largest_lane(maximum(maximum(top[0], top[1]), maximum(top[2], top[3])));
-    const F wanted = splat<F>(best);
-    uint64_t hits = 0;
-    for (int i = 0; i < 4 * blocks; ++i) hits |= static_cast<uint64_t>(mask_bits(value[i] == wanted)) << (4 * i);
-    // No hit: the direction is not finite.
-    return {best, hits != 0 ? first + static_cast<uint32_t>(std::countr_zero(hits)) : first};
-}
-
-// Largest dot product in [first, last), both multiples of 16.
-LENDULET_FORCE_INLINE Found scan(const std::vector<float>& xs, const std::vector<float>& ys,
-                                 const std::vector<float>& zs, uint32_t first, uint32_t last, Vec3T<F> d) {
-    Found best{-infinity, first};
-    for (; first < last; first += 64) {
-        Found found;
-        switch (last - first) {
-            case 16:
-                found = scan_blocks<1>(xs, ys, zs, first, d);
-                break;
-            case 32:
-                found = scan_blocks<2>(xs, ys, zs, first, d);
-                break;
-            case 48:
-                found = scan_blocks<3>(xs, ys, zs, first, d);
-                break;
-            default:
-                found = scan_blocks<4>(xs, ys, zs, first, d);
-        }
-        if (found.value > best.value) best = found;
-    }
-    return best;
+Found scan(const std::vector<float>& xs, const std::vector<float>& ys, const std::vector<float>& zs, uint32_t first,
+           uint32_t last, Vec3 d) {
+    return scan<F>(&xs[first], &ys[first], &zs[first], first, last, d);
 }
 
 // Upper bounds of the dot products within four clusters.
@@ -75,8 +39,9 @@ LENDULET_FORCE_INLINE F cluster_bounds(const HullClusters& c, uint32_t i, Vec3T<
 }
 
 // Looks into the most promising cluster first, then only into those whose bound reaches what was found.
-Found scan_clusters(const HullData& hull, Vec3T<F> d) {
+Found scan_clusters(const HullData& hull, Vec3 direction) {
     const HullClusters& c = hull.clusters;
+    const Vec3T<F> d = splat<F>(direction);
     Vec3T<F> size = absolute(d);
     F top = splat<F>(-infinity);
     Wide<int32_t, 4> where{}, lanes = {0, 1, 2, 3};
@@ -91,13 +56,13 @@ Found scan_clusters(const HullData& hull, Vec3T<F> d) {
         if (top[k] > top[lane]) lane = k;
     auto start = static_cast<uint32_t>(where[lane]);
     if (start >= c.count) start = 0;
-    Found best = scan_blocks<1>(hull.xs, hull.ys, hull.zs, 16 * start, d);
+    Found best = scan(hull.xs, hull.ys, hull.zs, 16 * start, 16 * start + 16, direction);
     for (uint32_t i = 0; i < c.count; i += 4) {
         uint32_t open = mask_bits(cluster_bounds(c, i, d, size) >= splat<F>(best.value));
         for (; open != 0; open &= open - 1) {
             uint32_t k = i + static_cast<uint32_t>(std::countr_zero(open));
             if (k == start || k >= c.count) continue;
-            Found found = scan_blocks<1>(hull.xs, hull.ys, hull.zs, 16 * k, d);
+            Found found = scan(hull.xs, hull.ys, hull.zs, 16 * k, 16 * k + 16, direction);
             if (found.value > best.value || (found.value == best.value && found.index < best.index)) best = found;
         }
     }
@@ -107,22 +72,25 @@ Found scan_clusters(const HullData& hull, Vec3T<F> d) {
 }  // namespace
 
 uint32_t support_vertex(const HullData& hull, Vec3 direction) {
-    Vec3T<F> d = splat<F>(direction);
-    if (hull.clusters.count != 0) return scan_clusters(hull, d).index;
-    return scan(hull.xs, hull.ys, hull.zs, 0, static_cast<uint32_t>(hull.xs.size()), d).index;
+    if (hull.clusters.count != 0) return scan_clusters(hull, direction).index;
+    const auto count = static_cast<uint32_t>(hull.xs.size());
+#if defined(__x86_64__) && !defined(LENDULET_FOUR_LANES)
+    if (cpu_has_avx2()) return farthest_avx2(hull.xs.data(), hull.ys.data(), hull.zs.data(), count, direction);
+#endif
+    return scan(hull.xs, hull.ys, hull.zs, 0, count, direction).index;
 }
 
 uint32_t support_face(const HullData& hull, Vec3 direction) {
     const HullLanes& n = hull.normals;
-    return scan(n.xs, n.ys, n.zs, 0, static_cast<uint32_t>(n.xs.size()), splat<F>(direction)).index;
+    return scan(n.xs, n.ys, n.zs, 0, static_cast<uint32_t>(n.xs.size()), direction).index;
 }
 
 HullExtents extents_along(const HullData& hull, const Vec3 (&axes)[3]) {
     HullExtents r;
     if (hull.clusters.count != 0) {
         for (int k = 0; k < 3; ++k) {
-            set_component(r.upper, k, scan_clusters(hull, splat<F>(axes[k])).value);
-            set_component(r.lower, k, -scan_clusters(hull, splat<F>(-axes[k])).value);
+            set_component(r.upper, k, scan_clusters(hull, axes[k]).value);
+            set_component(r.lower, k, -scan_clusters(hull, -axes[k]).value);
         }
         return r;
     }
