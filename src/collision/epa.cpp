@@ -179,9 +179,9 @@ Penetration descend_from_faces(const CoreDifference& difference, const Polytope&
         for (int g = 0; g < polytope.face_end(); ++g) {
             if (!polytope.alive(g)) continue;
             Vec3d n = polytope.normal(g);
-            bool fresh = polytope.distance(g) < least;
+            bool fresh = polytope.distance(g, n) < least;
             for (int i = 0; fresh && i < 2 * starts; ++i) fresh = dot(n, seen[i]) < elsewhere;
-            if (fresh) least = polytope.distance(g), f = g;
+            if (fresh) least = polytope.distance(g, n), f = g;
         }
         if (f < 0) break;
         Penetration found = descend(difference, polytope.normal(f), expansions);
@@ -197,12 +197,12 @@ Penetration descend_from_faces(const CoreDifference& difference, const Polytope&
 void foot_on_face(const CoreDifference& difference, const Polytope& polytope, int f, double tolerance,
                   Penetration& result) {
     const Vec3d n = polytope.normal(f);
-    const double distance = polytope.distance(f), sideways = 1e-7 * difference.size;
+    const double distance = polytope.distance(f, n), sideways = 1e-7 * difference.size;
     double least = 1e300;
     for (int g = f, next = 0; g < polytope.face_end(); g = next++) {
         if (!polytope.alive(g)) continue;
         const Vec3d m = polytope.normal(g);
-        if (!(dot(m, n) > 1.0 - 1e-10) || !(polytope.distance(g) <= distance + tolerance)) continue;
+        if (!(dot(m, n) > 1.0 - 1e-10) || !(polytope.distance(g, m) <= distance + tolerance)) continue;
         Simplex corners = polytope.triangle(g);
         SubSimplex part = closest_barycentric(corners.y, 3);
         if (!(length_squared(part.point) < least)) continue;
@@ -239,7 +239,7 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
         const Vec3d n = polytope.normal(f);
         DifferencePoint p = difference.support(n);
         observer.polytope(polytope, f, p);
-        double lower = polytope.distance(f), upper = dot(n, p.y), gap = upper - lower;
+        double lower = polytope.distance(f, n), upper = dot(n, p.y), gap = upper - lower;
         smooth.look(difference, n, lower, gap);
         bool proven = smooth.found && smooth.tangency.height - lower <= surface_smooth * size;
         bool last = proven || !(gap > tolerance) || expansions == max_expansions ||

@@ -1,7 +1,6 @@
 // A convex polytope of triangles inside a Minkowski difference, which takes new points one by one (thesis 4.2: the
 // faces below the new point go, the edges that bounded them are joined to it). Topology never depends on distances
-// being exact: the outline of the faces removed by a point is always one loop, and a removal that would tear the
-// surface is refused.
+// being exact: the faces removed by a point are always connected, and a removal that would tear the surface is refused.
 #pragma once
 
 #include <cstdint>
@@ -25,38 +24,32 @@ public:
     bool holds(Vec3d y) const;
 
     int face_end() const { return face_end_; }  // faces are 0 ... face_end() - 1, removed ones infinitely far
-    bool alive(int f) const { return distance_[f] < far; }
-    Vec3d normal(int f) const { return {normal_x_[f], normal_y_[f], normal_z_[f]}; }  // unit, outward
-    // From the origin to the plane of face f, positive where the origin lies inside.
-    double distance(int f) const { return distance_[f]; }
+    bool alive(int f) const { return key_[f] < far; }
+    Vec3d normal(int f) const { return (1.0 / square_root(faces_[f].nn)) * faces_[f].n; }
+    // From the origin to the plane of face f with normal n, positive where the origin lies inside.
+    double distance(int f, Vec3d n) const { return dot(n, y_[faces_[f].vertex[0]]); }
     Simplex triangle(int f) const;
 
 private:
     static constexpr double far = 1e300;
-    static constexpr int spare = max_faces;  // a place for a plane that belongs to no face
-    // Half edge 4 f + e of face f leads from its corner e to the next one, counter-clockwise seen from outside. A half
-    // edge of the outline in one word, which is written and read at once: where it begins and ends, and its twin on the
-    // face that stays.
-    class Edge {
-    public:
-        Edge() {}
-        Edge(uint32_t from, uint32_t to, uint32_t twin) : bits_(from | to << 8 | twin << 16) {}
-        uint32_t from() const { return bits_ & 255; }
-        uint32_t to() const { return bits_ >> 8 & 255; }
-        uint32_t twin() const { return bits_ >> 16; }
-
-    private:
-        uint32_t bits_;
+    struct Face {
+        Vec3d n;  // outward, of any length; zero for a face without area
+        double nn;
+        uint8_t vertex[3];     // counter-clockwise seen from outside
+        uint8_t neighbour[3];  // across the edge from vertex[i] to vertex[i + 1]
+    };
+    struct Edge {
+        uint8_t from, to;
+        uint8_t outer, outer_edge;  // the face that stays, and which of its edges this is
     };
 
-    int add_vertex(const DifferencePoint& p);
+    void set_corners(int f, int i, int j, int k);
     template <class F>
-    void set_planes(const int* faces, Vec3T<F> from, Vec3T<F> to, Vec3d apex);
-    void find_visible(int f, Vec3d y);
-    void list_visible();
-    bool find_outline();
-    bool keep_connected(int f);
-    void join_outline(const DifferencePoint& p);
+    void set_planes(const int* faces, Vec3T<F> i, Vec3T<F> j, Vec3T<F> k);
+    int add_vertex(const DifferencePoint& p);
+    bool lies_above(Vec3d y, const Face& face) const;
+    void collect_visible(int f, int entered, Vec3d y);
+    bool outline_is_simple();
 
     int vertex_count_, face_end_, free_count_, visible_count_, edge_count_;
     double tolerance_;
@@ -70,15 +63,14 @@ private:
     union {
         Vec3 b_[max_vertices];
     };
-    // Planes component by component, for loops over two faces at a time. A face without area has no normal, offset 0,
-    // and lies infinitely far. `height_` is how far the point that is being taken lies above each plane.
-    double normal_x_[max_faces + 1], normal_y_[max_faces + 1], normal_z_[max_faces + 1];
-    double offset_[max_faces + 1], distance_[max_faces + 1], height_[max_faces + 1];
-    uint8_t corner_[4 * max_faces];
-    uint16_t twin_[4 * max_faces];
-    uint8_t free_[max_faces], visible_[max_faces + 1];
+    union {
+        Face faces_[max_faces + 1];  // the last is for a plane that belongs to no face
+    };
+    double key_[max_faces + 1];  // the distance times its absolute value, which orders faces without a square root
+    uint8_t free_[max_faces], visible_[max_faces];
+    bool is_visible_[max_faces];
     Edge outline_[max_faces + 1];
-    uint8_t edge_from_[max_vertices];  // which edge of the outline begins at a vertex
+    uint8_t last_seen_[max_vertices];  // the expansion in whose outline a vertex was last
 };
 
 }  // namespace lendulet
