@@ -1,30 +1,51 @@
 #include "collision/epa_polytope.h"
 
+#include "math/wide/wide.h"
+
 namespace lendulet {
 namespace {
 
 // Squared sine below which the corners of a face count as collinear: its normal would be rounding.
 constexpr double collinear = 1e-18;
 
+using Two = Wide<double, 2>;
+
 constexpr int next_corner(int i) { return i == 2 ? 0 : i + 1; }
+
+LENDULET_FORCE_INLINE double either(bool mask, double a, double b) { return mask ? a : b; }
+template <class M>
+LENDULET_FORCE_INLINE Two either(M mask, Two a, Two b) {
+    return mask ? a : b;
+}
+LENDULET_FORCE_INLINE double lane_of(double a, int) { return a; }
+LENDULET_FORCE_INLINE double lane_of(Two a, int i) { return a[i]; }
+LENDULET_FORCE_INLINE Vec3T<Two> side_by_side(Vec3d a, Vec3d b) {
+    return {Two{a.x, b.x}, Two{a.y, b.y}, Two{a.z, b.z}};
+}
 
 }  // namespace
 
-inline void Polytope::set_face(int f, int i, int j, int k) {
+inline void Polytope::set_corners(int f, int i, int j, int k) {
     Face& face = faces_[f];
     face.vertex[0] = static_cast<uint8_t>(i);
     face.vertex[1] = static_cast<uint8_t>(j);
     face.vertex[2] = static_cast<uint8_t>(k);
     is_visible_[f] = false;
-    Vec3d e1 = y_[j] - y_[i], e2 = y_[k] - y_[i];
-    face.n = cross(e1, e2);
-    face.nn = dot(face.n, face.n);
-    if (face.nn > collinear * dot(e1, e1) * dot(e2, e2)) {
-        double h = dot(face.n, y_[i]);
-        key_[f] = h * absolute(h) / face.nn;
-    } else {
-        face.n = {};
-        key_[f] = far;
+}
+
+// Planes of the faces with corners i, j, k: one for each lane of F.
+template <class F>
+LENDULET_FORCE_INLINE void Polytope::set_planes(const int* faces, Vec3T<F> i, Vec3T<F> j, Vec3T<F> k) {
+    const Vec3T<F> e1 = j - i, e2 = k - i, n = cross(e1, e2);
+    const F nn = dot(n, n), h = dot(n, i);
+    const auto plain = nn > collinear * dot(e1, e1) * dot(e2, e2);
+    const F key = either(plain, h * either(h < F{}, -h, h) / nn, F{} + far);
+    for (int lane = 0; lane < static_cast<int>(sizeof(F) / sizeof(double)); ++lane) {
+        Face& face = faces_[faces[lane]];
+        key_[faces[lane]] = lane_of(key, lane);
+        face.n = {lane_of(n.x, lane), lane_of(n.y, lane), lane_of(n.z, lane)};
+        face.nn = lane_of(nn, lane);
+        if (!(key_[faces[lane]] < far)) face.n = {};
     }
 }
 
@@ -47,7 +68,8 @@ void Polytope::start(const Simplex& s, double tolerance) {
     static constexpr uint8_t corners[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
     for (int m = 0; m < 4; ++m) {
         int i = corners[m][0], j = corners[m][positive ? 1 : 2], k = corners[m][positive ? 2 : 1];
-        set_face(m, i, j, k);
+        set_corners(m, i, j, k);
+        set_planes<double>(&m, y_[i], y_[j], y_[k]);
         // The neighbour across an edge is the face opposite to the remaining corner.
         faces_[m].neighbour[0] = static_cast<uint8_t>(k);
         faces_[m].neighbour[1] = static_cast<uint8_t>(i);
@@ -117,23 +139,30 @@ bool Polytope::expand(int f, const DifferencePoint& p) {
         for (int i = 0; i < visible_count_; ++i) is_visible_[visible_[i]] = false;
         return false;
     }
-    uint8_t fresh[max_faces];
+    int fresh[max_faces + 1];
     for (int i = 0; i < edge_count_; ++i)
-        fresh[i] = i < visible_count_ ? visible_[i]
-                                      : static_cast<uint8_t>(free_count_ > 0 ? free_[--free_count_] : face_end_++);
+        fresh[i] = i < visible_count_ ? visible_[i] : free_count_ > 0 ? free_[--free_count_] : face_end_++;
     for (int i = edge_count_; i < visible_count_; ++i) {
         key_[visible_[i]] = far;
         free_[free_count_++] = visible_[i];
     }
     int apex = add_vertex(p);
+    // Two planes at a time; the last one goes with a repetition that nobody reads where their number is odd.
+    fresh[edge_count_] = max_faces;
+    outline_[edge_count_] = outline_[0];
+    const Vec3T<Two> top = side_by_side(p.y, p.y);
+    for (int i = 0; i < edge_count_; i += 2) {
+        const Edge &one = outline_[i], &two = outline_[i + 1];
+        set_planes<Two>(&fresh[i], side_by_side(y_[one.from], y_[two.from]), side_by_side(y_[one.to], y_[two.to]), top);
+    }
     for (int i = 0; i < edge_count_; ++i) {
         const Edge& edge = outline_[i];
-        set_face(fresh[i], edge.from, edge.to, apex);
+        set_corners(fresh[i], edge.from, edge.to, apex);
         Face& face = faces_[fresh[i]];
         face.neighbour[0] = edge.outer;
-        face.neighbour[1] = fresh[i + 1 < edge_count_ ? i + 1 : 0];
-        face.neighbour[2] = fresh[i > 0 ? i - 1 : edge_count_ - 1];
-        faces_[edge.outer].neighbour[edge.outer_edge] = fresh[i];
+        face.neighbour[1] = static_cast<uint8_t>(fresh[i + 1 < edge_count_ ? i + 1 : 0]);
+        face.neighbour[2] = static_cast<uint8_t>(fresh[i > 0 ? i - 1 : edge_count_ - 1]);
+        faces_[edge.outer].neighbour[edge.outer_edge] = static_cast<uint8_t>(fresh[i]);
     }
     return true;
 }

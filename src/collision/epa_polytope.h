@@ -43,7 +43,9 @@ private:
         uint8_t outer, outer_edge;  // the face that stays, and which of its edges this is
     };
 
-    void set_face(int f, int i, int j, int k);
+    void set_corners(int f, int i, int j, int k);
+    template <class F>
+    void set_planes(const int* faces, Vec3T<F> i, Vec3T<F> j, Vec3T<F> k);
     int add_vertex(const DifferencePoint& p);
     bool lies_above(Vec3d y, const Face& face) const;
     void collect_visible(int f, int entered, Vec3d y);
@@ -62,12 +64,12 @@ private:
         Vec3 b_[max_vertices];
     };
     union {
-        Face faces_[max_faces];
+        Face faces_[max_faces + 1];  // the last is for a plane that belongs to no face
     };
-    double key_[max_faces];  // the distance times its absolute value, which orders faces without a square root
+    double key_[max_faces + 1];  // the distance times its absolute value, which orders faces without a square root
     uint8_t free_[max_faces], visible_[max_faces];
     bool is_visible_[max_faces];
-    Edge outline_[max_faces];
+    Edge outline_[max_faces + 1];
     uint8_t last_seen_[max_vertices];  // the expansion in whose outline a vertex was last
 };
 

@@ -9,6 +9,15 @@
 
 namespace lendulet {
 
+// Farthest corner of a hull along d (any length), local frame.
+LENDULET_FORCE_INLINE Vec3 support_corner(const Geometry& g, Vec3d d) {
+    // Out of the range of float products (near contact v can be 1e-30 m long) only the direction is kept.
+    double m = largest_component(d);
+    if (m < 1e-12 || m > 1e12) d = (m > 0.0 ? 1.0 / m : 0.0) * d;
+    Vec3 corner = g.hull->vertices[support_vertex(*g.hull, to_float(d))];
+    return g.size.x == 0.0f ? corner : corner - g.size.x * (corner - g.hull->centroid);
+}
+
 // Farthest point of a core along d (any length), local frame. Curved cores are evaluated in double: in float the noise
 // of their surface would show in the normals of near contacts. Corners are exact floats in any case.
 inline Vec3d support_point(const Geometry& g, Vec3d d) {
@@ -37,12 +46,10 @@ inline Vec3d support_point(const Geometry& g, Vec3d d) {
             double at_p = dot(d, p), at_q = dot(d, q), at_r = dot(d, r);
             return at_p >= at_q && at_p >= at_r ? p : at_q >= at_r ? q : r;
         }
-        default: {
-            // Out of the range of float products (near contact v can be 1e-30 m long) only the direction is kept.
-            double m = largest_component(d);
-            if (m < 1e-12 || m > 1e12) d = (m > 0.0 ? 1.0 / m : 0.0) * d;
-            return to_double(support_core(g, to_float(d)));
-        }
+        case GeometryKind::hull:
+            return to_double(support_corner(g, d));
+        default:
+            return {};
     }
 }
 
@@ -138,6 +145,10 @@ struct CoreDifference {
           curved(is_curved(a) || is_curved(b)) {}
 
     DifferencePoint support(Vec3d d) const {
+        if (a.kind == GeometryKind::hull && b.kind == GeometryKind::hull) {
+            const Vec3 pa = support_corner(a, -d), pb = support_corner(b, transpose_multiply(rotation, d));
+            return {translation + rotation * to_double(pb) - to_double(pa), pa, pb};
+        }
         Vec3d pa = support_point(a, -d), pb = support_point(b, transpose_multiply(rotation, d));
         return {translation + rotation * pb - pa, to_float(pa), to_float(pb)};
     }

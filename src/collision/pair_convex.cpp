@@ -22,8 +22,8 @@ struct Contact {
     const CollidePair* pair;
     Transform b_in_a;
     ConvexDistance nearest;
-    Face a, b;
     float sweep;  // sum of the radii around the cores
+    Face a, b;
 };
 
 float flatness(const Face& face, Vec3 normal) { return face.count >= 3 ? dot(face.normal, normal) : -1.0f; }
@@ -106,18 +106,22 @@ int face_manifold(const Contact& c, bool from_b, Manifold& out) {
 }  // namespace
 
 int collide_convex_convex(const CollidePair& pair, PairCache& cache, const CollideSettings& settings, Manifold& out) {
-    Contact c;
-    c.pair = &pair;
-    c.b_in_a = {rotate_inverse(pair.rotation_a, pair.offset), conjugate(pair.rotation_a) * pair.rotation_b};
-    c.sweep = pair.a->rounding + pair.b->rounding;
-    c.nearest = distance({pair.a, pair.b, c.b_in_a}, cache.gjk, settings.simplex, 2.0f * pair.margin + c.sweep);
-    if (!(c.nearest.distance - c.sweep <= pair.margin)) {
-        cache.clearance = c.nearest.distance - c.sweep;
+    const Transform b_in_a{rotate_inverse(pair.rotation_a, pair.offset), conjugate(pair.rotation_a) * pair.rotation_b};
+    const float sweep = pair.a->rounding + pair.b->rounding;
+    const ConvexDistance nearest =
+        distance({pair.a, pair.b, b_in_a}, cache.gjk, settings.simplex, 2.0f * pair.margin + sweep);
+    if (!(nearest.distance - sweep <= pair.margin)) {
+        cache.clearance = nearest.distance - sweep;
         return 0;
     }
-    Vec3 normal = c.nearest.normal;
-    c.a = best_face(*pair.a, normal);
-    c.b = best_face(*pair.b, rotate_inverse(c.b_in_a.rotation, -normal));
+    const Vec3 normal = nearest.normal;
+    // The faces are made in their places: they are too large to be copied.
+    Contact c{&pair,
+              b_in_a,
+              nearest,
+              sweep,
+              best_face(*pair.a, normal),
+              best_face(*pair.b, rotate_inverse(b_in_a.rotation, -normal))};
     transform_face(c.b_in_a, c.b);
     float flat_a = flatness(c.a, normal), flat_b = flatness(c.b, -normal);
     bool from_b = flat_b > flat_a + (cache.feature == reference_b ? -reference_hysteresis : reference_hysteresis);

@@ -78,7 +78,9 @@ InnerCore inner_core(const Geometry& g);
 inline constexpr int max_face_vertices = 32;
 struct Face {
     int count = 0;
-    Vec3 vertices[max_face_vertices];
+    union {
+        Vec3 vertices[max_face_vertices];  // unset from `count` on: clearing them takes as long as finding the face
+    };
     uint16_t ids[max_face_vertices];  // stable names of the vertices on this shape, for warm starting
     Vec3 normal;                      // unit, outward; where count < 3 the unit direction asked for
     uint16_t id = 0;                  // stable name of the face
@@ -86,6 +88,8 @@ struct Face {
     // ends of a tapered capsule). They are on the surface already, so separations must not subtract it; but as the body
     // rolls, a contact there stays beneath the axis instead of turning with the body.
     float extra_radius = 0.0f;
+
+    Face() {}
 };
 Face best_face(const Geometry& g, Vec3 direction);
 
