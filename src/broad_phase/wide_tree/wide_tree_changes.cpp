@@ -176,7 +176,9 @@ void WideTreeSet::remove(uint32_t place) {
     touch(lane / group_lanes);
 }
 
-WideTreeChanges WideTreeSet::changes() const { return {changed_.data(), first_row_.data(), rows_.data()}; }
+WideTreeChanges WideTreeSet::changes() const { 
+    return {changed_.data(), first_row_.data(), rows_.data(), row_lane_.data()};
+}
 
 // The bounds of the levels above the touched groups from those below.
 void WideTreeSet::raise_touched() {
