@@ -11,8 +11,8 @@ template <class F>
 LENDULET_FORCE_INLINE Spread<F> spread(const BroadBox& box) {
     Spread<F> all;
     for (int d = 0; d < 3; ++d) {
-        all.at[d] = splat<F>(box.lower[d]);
-        all.at[3 + d] = splat<F>(box.upper[d]);
+        all.at[d] = repeat<F>(box.lower[d]);
+        all.at[3 + d] = repeat<F>(box.upper[d]);
     }
     return all;
 }
