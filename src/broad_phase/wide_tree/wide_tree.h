@@ -46,6 +46,9 @@ public:
     // visit(index) for every box of both sets that overlaps, each once.
     template <class Visit>
     void visit_overlapping(const float lower[3], const float upper[3], Visit&& visit) const;
+    // The hits of the queries [begin, end) as (query, index), in an order of queries that depends on where the range is
+    // cut; those of one query always come in one order.
+    void find_hits(const BoxQuery* queries, int begin, int end, PairList& out) const;
     // Offer every box of both sets that could better the best hit.
     void cast(BoxCast& cast) const;
     void nearest(NearestBox& nearest) const;

@@ -188,7 +188,7 @@ void WideTreeSet::remove(uint32_t place) {
     touch(lane / group_lanes);
 }
 
-WideTreeChanges WideTreeSet::changes() const { 
+WideTreeChanges WideTreeSet::changes() const {
     return {changed_.data(), first_row_.data(), rows_.data(), row_lane_.data()};
 }
 

@@ -78,6 +78,8 @@ struct WideTreeKernels {
                          int begin, int end, PairStream& out);
     // Queries; see BroadPhase. The box of the first is finite.
     void (*find_overlapping)(const WideTreeView& tree, const Bounds6& box, IndexStream& out);
+    // The hits of the queries [begin, end) as (query, index), in any order; those of one query in the order of groups.
+    void (*find_hits)(const WideTreeView& tree, const BoxQuery* queries, int begin, int end, PairStream& out);
     void (*cast)(const WideTreeView& tree, BoxCast& cast);
     void (*nearest)(const WideTreeView& tree, NearestBox& nearest);
 };
