@@ -94,14 +94,13 @@ void BoxTree::collect(const BroadBox* boxes, int count) {
     using Int4 = Wide<int32_t, 4>;
     const Int4 sides{-1, -1, -1, 0};  // without the word behind: most integers are denormal floats, which are slow
     for (int i = 0; i < count; ++i) {
-        Float4 lower = (Float4)((Int4)load_wide<Float4>(boxes[i].lower) & sides);
-        Float4 upper = (Float4)((Int4)load_wide<Float4>(boxes[i].upper) & sides);
-        const Float4 most = splat<Float4>(FLT_MAX);
-        if (mask_bits((absolute(lower) <= most) & (absolute(upper) <= most)) != 15u) {
+        if (!bounded(boxes[i])) {
             unbounded_.push_back(boxes[i]);
             unbounded_slot_.push_back(static_cast<uint32_t>(i));
             continue;
         }
+        Float4 lower = (Float4)((Int4)load_wide<Float4>(boxes[i].lower) & sides);
+        Float4 upper = (Float4)((Int4)load_wide<Float4>(boxes[i].upper) & sides);
         // Halved before adding: the sum of two large floats may overflow.
         const Float4 half = splat<Float4>(0.5f);
         Int4 at = ordered(half * lower + half * upper);
