@@ -15,12 +15,12 @@
 // reads the 32 bytes of a box twice and the 16 of its centre seven times. Both together are 23 ns a box.
 //
 // A frame in which 5 % of the boxes move. A changed box is near two groups of those of any number of boxes (1.7 to 2.0
-// from 1000 to 100 000), and is tested against both as it was and as it is: 16 tests of sixteen lanes, 96 comparisons of
-// 64 bytes, over 3 kB of groups, beside its 32 bytes of before and after and the tests of one to five blocks above. At
-// one comparison a cycle that alone is 27 ns for each that moves, 5 % of building and searching anew; all of it takes
-// 90 to 110 ns up to 10 000 boxes and 170 at 100 000, where groups and changed boxes come from the outer caches: a sixth
-// to a quarter of building and searching anew. More than half is the search, a fifth the gathering of the changed boxes, a
-// tenth each the sorting of what begins and ends and the bounds.
+// from 1000 to 100 000), and is tested against both as it was and as it is: 16 tests of sixteen lanes, 96 comparisons
+// of 64 bytes, over 3 kB of groups, beside its 32 bytes of before and after and the tests of one to five blocks above.
+// At one comparison a cycle that alone is 27 ns for each that moves, 5 % of building and searching anew; all of it
+// takes 90 to 110 ns up to 10 000 boxes and 170 at 100 000, where groups and changed boxes come from the outer caches:
+// a sixth to a quarter of building and searching anew. More than half is the search, a fifth the gathering of the
+// changed boxes, a tenth each the sorting of what begins and ends and the bounds.
 #pragma once
 
 #include "base/memory.h"
