@@ -2,6 +2,7 @@
 // that the order of pairs does not depend on the width of the machine's vectors.
 #pragma once
 
+#include <cfloat>
 #include <cstdint>
 
 #include "broad_phase/box.h"
@@ -65,12 +66,9 @@ inline bool overlap(const BroadBox& a, const float lower[3], const float upper[3
 
 // No side is infinite.
 inline bool bounded(const BroadBox& box) {
-    bool yes = true;
-    for (int d = 0; d < 3; ++d) {
-        yes &=
-            box.lower[d] > -infinity && box.lower[d] < infinity && box.upper[d] > -infinity && box.upper[d] < infinity;
-    }
-    return yes;
+    const Float4 most = splat<Float4>(FLT_MAX);
+    auto finite = (absolute(load_wide<Float4>(box.lower)) <= most) & (absolute(load_wide<Float4>(box.upper)) <= most);
+    return (mask_bits(finite) & 7) == 7;  // the fourth words are no sides
 }
 
 inline BroadBox box_in(const BoxBlock& block, int lane, uint32_t index) {
@@ -91,6 +89,15 @@ inline void clear_lane(BoxBlock& block, int lane) {
     for (int d = 0; d < 3; ++d) {
         block.lower[d][lane] = infinity;
         block.upper[d][lane] = -infinity;
+    }
+}
+
+inline void clear_lanes(BoxBlock& block) {
+    for (int d = 0; d < 3; ++d) {
+        for (int i = 0; i < block_size; i += 4) {
+            store_wide(block.lower[d] + i, splat<Float4>(infinity));
+            store_wide(block.upper[d] + i, splat<Float4>(-infinity));
+        }
     }
 }
 

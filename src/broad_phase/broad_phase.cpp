@@ -1,5 +1,7 @@
 #include "broad_phase/broad_phase.h"
 
+#include <utility>
+
 #include "broad_phase/query.h"
 
 namespace lendulet {
@@ -81,6 +83,8 @@ void BroadPhase::query_boxes(TaskPool& tasks, const BoxQuery* queries, int count
     query_chunks_.search(tasks, count, queries_per_task, query_hits_, [&](int begin, int end, PairList& list) {
         std::visit(
             [&](const auto& s) {
+                if constexpr (requires { s.find_hits(queries, begin, end, list); })
+                    return s.find_hits(queries, begin, end, list);
                 for (int i = begin; i < end; ++i) {
                     s.visit_overlapping(queries[i].lower, queries[i].upper, [&](uint32_t index) {
                         PairWriter(list, 1).write_as_it_is(static_cast<uint32_t>(i), index);
@@ -89,15 +93,14 @@ void BroadPhase::query_boxes(TaskPool& tasks, const BoxQuery* queries, int count
             },
             structure_);
     });
+    // Dealt to their queries. offsets[i + 1] counts the hits of query i, then says where the next of them goes.
     offsets.assign(static_cast<size_t>(count) + 1, 0);
-    size_t hit = 0;
-    for (int i = 0; i < count; ++i) {
-        offsets[i] = static_cast<uint32_t>(out.size());
-        for (; hit < query_hits_.size() && query_hits_[hit].a == static_cast<uint32_t>(i); ++hit) {
-            out.push_back(query_hits_[hit].b);
-        }
-    }
-    offsets[count] = static_cast<uint32_t>(out.size());
+    for (const BoxPair& hit : query_hits_) ++offsets[hit.a + 1];
+    uint32_t begin = static_cast<uint32_t>(out.size());
+    offsets[0] = begin;
+    for (int i = 1; i <= count; ++i) begin += std::exchange(offsets[i], begin);
+    out.resize_unset(out.size() + query_hits_.size());
+    for (const BoxPair& hit : query_hits_) out[offsets[hit.a + 1]++] = hit.b;
 }
 
 void BroadPhase::rays(TaskPool& tasks, const RayQuery* queries, int count, BroadPhaseHit* hits) const {

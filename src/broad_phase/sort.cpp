@@ -5,13 +5,12 @@
 
 namespace lendulet {
 
-void sort_keys(Array<uint64_t>& keys, Array<uint64_t>& swap, int first_bit) {
-    constexpr size_t radix_pays_from = 400;  // measured: below, clearing and summing the histograms costs more
-    if (keys.size() < radix_pays_from) {
-        std::sort(keys.begin(), keys.end());  // order: total, keys that are equal cannot be told apart
-        return;
-    }
-    constexpr int digit = 11, radix = 1 << digit;
+namespace {
+
+// By digits of so many bits, the lowest first.
+template <int digit>
+void sort_by_digits(Array<uint64_t>& keys, Array<uint64_t>& swap, int first_bit) {
+    constexpr int radix = 1 << digit;
     uint64_t differing = 0;
     for (uint64_t key : keys) differing |= key ^ keys[0];
     swap.resize_unset(keys.size());
@@ -24,6 +23,19 @@ void sort_keys(Array<uint64_t>& keys, Array<uint64_t>& swap, int first_bit) {
         for (uint64_t key : keys) swap[place[key >> shift & (radix - 1)]++] = key;
         keys.swap(swap);
     }
+}
+
+}  // namespace
+
+void sort_keys(Array<uint64_t>& keys, Array<uint64_t>& swap, int first_bit) {
+    // Measured: below, clearing and summing the histograms costs more.
+    constexpr size_t small_digits_pay_from = 64, large_digits_pay_from = 1500;
+    if (keys.size() < small_digits_pay_from) {
+        std::sort(keys.begin(), keys.end());  // order: total, keys that are equal cannot be told apart
+        return;
+    }
+    keys.size() < large_digits_pay_from ? sort_by_digits<8>(keys, swap, first_bit)
+                                        : sort_by_digits<11>(keys, swap, first_bit);
 }
 
 void append_missing(const Array<uint64_t>& from, const Array<uint64_t>& in, Array<BoxPair>& out) {

@@ -116,6 +116,49 @@ TEST(WideTreeTest, WidthsWriteTheSameLists) {
     }
 }
 
+// More groups than a list of those to be looked at holds, all near one box.
+TEST(WideTreeTest, ABoxMayBeNearAllGroups) {
+    constexpr size_t n = 14000;
+    Boxes before = make_boxes("uniform", n, 6);
+    const float side = 40;
+    before[9] = box_around({side / 2, side / 2, side / 2}, {side, side, side / 4}, before[9].index);
+    Boxes after = before;
+    Random random(8);
+    for (size_t i = 9; i < n; i += 50) move_by(after[i], random, 0.3f);
+    Pairs old = pairs_by_sweep(before, 2), now = pairs_by_sweep(after, 2);
+    Lists expected;
+    std::set_difference(now.begin(), now.end(), old.begin(), old.end(), std::back_inserter(expected.begun));
+    std::set_difference(old.begin(), old.end(), now.begin(), now.end(), std::back_inserter(expected.ended));
+    ASSERT_GT(expected.begun.size(), 100u);
+
+    std::vector<BoxQuery> queries;
+    for (size_t i = 0; i < 130; ++i) {
+        BroadBox box = after[i % 3 ? i : 9];  // every third meets nearly half of all
+        queries.push_back({{box.lower[0], box.lower[1], box.lower[2]}, {box.upper[0], box.upper[1], box.upper[2]}});
+    }
+    for (int width : widths) {
+        Scene scene({}, before, width);
+        scene.boxes = after;
+        EXPECT_EQ(scene.update(), expected) << width;
+        EXPECT_STREQ(scene.tree.check(), "");
+        Array<BoxPair> found;
+        {
+            PairList list(found, true);
+            scene.tree.find_hits(queries.data(), 0, static_cast<int>(queries.size()), list);
+        }
+        size_t next = 0;
+        for (size_t i = 0; i < queries.size(); ++i) {
+            scene.tree.visit_overlapping(queries[i].lower, queries[i].upper, [&](uint32_t index) {
+                bool same = next < found.size() && found[next].a == i && found[next].b == index;
+                ASSERT_TRUE(same) << width << ' ' << i;
+                ++next;
+            });
+        }
+        EXPECT_EQ(next, found.size());
+        EXPECT_GT(next, n * 10);
+    }
+}
+
 TEST(WideTreeTest, WorkersWriteTheSameLists) {
     Boxes fixed = make_boxes("ground", 3000, 3, 100000), moving = make_boxes("clustered", 9000, 4);
     Scene reference(fixed, moving);

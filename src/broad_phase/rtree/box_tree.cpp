@@ -91,18 +91,21 @@ void BoxTree::collect(const BroadBox* boxes, int count) {
     unbounded_slot_.clear();
     centres_.resize_unset(static_cast<size_t>(count));
     size_t n = 0;
+    using Int4 = Wide<int32_t, 4>;
+    const Int4 sides{-1, -1, -1, 0};  // without the word behind: most integers are denormal floats, which are slow
     for (int i = 0; i < count; ++i) {
-        const BroadBox& box = boxes[i];
-        uint32_t slot = static_cast<uint32_t>(i);
-        if (!bounded(box)) {
-            unbounded_.push_back(box);
-            unbounded_slot_.push_back(slot);
+        if (!bounded(boxes[i])) {
+            unbounded_.push_back(boxes[i]);
+            unbounded_slot_.push_back(static_cast<uint32_t>(i));
             continue;
         }
+        Float4 lower = (Float4)((Int4)load_wide<Float4>(boxes[i].lower) & sides);
+        Float4 upper = (Float4)((Int4)load_wide<Float4>(boxes[i].upper) & sides);
         // Halved before adding: the sum of two large floats may overflow.
-        BoxCentre& centre = centres_[n++];
-        for (int d = 0; d < 3; ++d) centre.at[d] = ordered(0.5f * box.lower[d] + 0.5f * box.upper[d]);
-        centre.slot = slot;
+        const Float4 half = splat<Float4>(0.5f);
+        Int4 at = ordered(half * lower + half * upper);
+        at[3] = i;
+        std::memcpy(static_cast<void*>(&centres_[n++]), &at, sizeof at);
     }
     centres_.resize_unset(n);
 }

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "math/wide/wide.h"
+
 namespace lendulet {
 
 // A box as the cuts see it: the coordinates of its centre as integers of the same order, since integers are compared
@@ -19,6 +21,11 @@ inline int32_t ordered(float x) {
     x += 0.0f;
     int32_t bits;
     std::memcpy(&bits, &x, sizeof bits);
+    return bits ^ (bits >> 31 & 0x7fffffff);
+}
+inline Wide<int32_t, 4> ordered(Wide<float, 4> x) {
+    x += 0.0f;
+    Wide<int32_t, 4> bits = (Wide<int32_t, 4>)x;
     return bits ^ (bits >> 31 & 0x7fffffff);
 }
 inline float from_ordered(int32_t bits) {

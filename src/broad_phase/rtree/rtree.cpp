@@ -71,7 +71,7 @@ typename RTree<policy>::Ref RTree<policy>::new_node(int level) {
         node = free_.back();
         free_.pop_back();
     }
-    for (int k = 0; k < block_size; ++k) clear_lane(blocks_[node], k);
+    clear_lanes(blocks_[node]);
     nodes_[node] = {no_box, static_cast<uint16_t>(level), 0};
     return node;
 }

@@ -4,22 +4,41 @@ namespace lendulet {
 
 namespace {
 
-// The axis along which the centres of the bounded boxes have the largest variance, in double, so that boxes as far out
-// as floats go do not overflow. Another axis replaces the current one only if clearly better: a change sorts both lists
-// anew.
-int axis_of_largest_variance(const BroadBox* boxes, int count, int current) {
-    double sum[3] = {}, squares[3] = {}, bounded[3] = {}, variance[3];
+struct Scatter {
+    double count[3] = {}, sum[3] = {}, squares[3] = {};
+
+    double variance(int d) const { return count[d] > 0 ? squares[d] - sum[d] / count[d] * sum[d] : 0; }
+};
+
+// Of the centres, in double, so that boxes as far out as floats go do not overflow. `some_infinite`: on each axis only
+// of those that are finite there, neither infinite on a side nor NaN from both.
+template <bool some_infinite>
+Scatter scatter_of(const BroadBox* boxes, int count) {
+    Scatter scatter;
+    for (double& n : scatter.count) n = some_infinite ? 0 : count;
     for (int i = 0; i < count; ++i) {
         for (int d = 0; d < 3; ++d) {
             double centre = 0.5 * boxes[i].lower[d] + 0.5 * boxes[i].upper[d];
-            bool finite = centre - centre == 0;  // not where it is infinite on a side, or NaN from both
-            centre = finite ? centre : 0;
-            sum[d] += centre;
-            squares[d] += centre * centre;
-            bounded[d] += finite;
+            if (some_infinite) {
+                bool finite = centre - centre == 0;
+                centre = finite ? centre : 0;
+                scatter.count[d] += finite;
+            }
+            scatter.sum[d] += centre;
+            scatter.squares[d] += centre * centre;
         }
     }
-    for (int d = 0; d < 3; ++d) variance[d] = bounded[d] > 0 ? squares[d] - sum[d] / bounded[d] * sum[d] : 0;
+    return scatter;
+}
+
+// The axis along which the centres of the bounded boxes have the largest variance. Another axis replaces the current
+// one only if clearly better: a change sorts both lists anew.
+int axis_of_largest_variance(const BroadBox* boxes, int count, int current) {
+    Scatter scatter = scatter_of<false>(boxes, count);
+    double all = scatter.sum[0] + scatter.sum[1] + scatter.sum[2];
+    if (!(all - all == 0)) scatter = scatter_of<true>(boxes, count);
+    double variance[3];
+    for (int d = 0; d < 3; ++d) variance[d] = scatter.variance(d);
     int best = current;
     for (int d = 0; d < 3; ++d) {
         if (variance[d] > 1.2 * variance[current] && variance[d] > variance[best]) best = d;

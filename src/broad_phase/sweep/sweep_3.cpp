@@ -53,6 +53,10 @@ void Sweep3::find_pairs(TaskPool&, Array<BoxPair>& out) {
 // Deals the sides of an order out to the tiles of their boxes; each tile gets its own in order.
 void Sweep3::sort_into_tiles(const IntervalOrder& order, Array<Side>& sides, Array<uint32_t>& filled) {
     sides.resize_unset(static_cast<size_t>(order.count()));
+    if (order.count() <= tile) {
+        for (int i = 0; i < order.count(); ++i) sides[i] = {order.bits(i), order.place(i)};
+        return;
+    }
     filled.assign(static_cast<size_t>((order.count() + tile - 1) / tile), 0);
     for (int i = 0; i < order.count(); ++i) {
         uint32_t place = order.place(i), t = place / tile;

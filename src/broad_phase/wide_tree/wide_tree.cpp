@@ -67,6 +67,20 @@ void WideTree::pairs_of_unbounded(Array<BoxPair>& out) const {
 // ---------------------------------------------------------------------------------------------------------------------
 // Queries
 
+void WideTree::find_hits(const BoxQuery* queries, int begin, int end, PairList& out) const {
+    for (const WideTreeSet* set : {&moving_, &fixed_}) {
+        for (const BroadBox& box : set->unbounded()) {
+            for (int i = begin; i < end; ++i) {
+                if (!overlap(box, queries[i].lower, queries[i].upper)) continue;
+                PairWriter(out, 1).write_as_it_is(static_cast<uint32_t>(i), box.index);
+            }
+        }
+        if (set->count() == set->unbounded().count()) continue;
+        PairRoom room(out);
+        kernels_.find_hits(set->view(), queries, begin, end, room);
+    }
+}
+
 void WideTree::cast(BoxCast& cast) const {
     for (const WideTreeSet* set : {&moving_, &fixed_}) {
         for (const BroadBox& box : set->unbounded()) cast.offer(measure(cast, box.lower, box.upper), box.index);
@@ -85,6 +99,7 @@ void WideTree::nearest(NearestBox& nearest) const {
 // lane.
 void WideTree::visit_groups_of(const WideTreeSet& set, const float lower[3], const float upper[3], Visitor visit,
                                void* context) const {
+    if (set.count() == set.unbounded().count()) return;
     struct Batch : IndexStream {
         uint32_t hits[4 * group_lanes];
         Visitor visit;

@@ -2,7 +2,7 @@
 // of bounds above them, no pointers. Everything is tested as many at a time as the machine's vectors hold, and where a
 // loop may meet a hit or not it notes bits instead of branching. wide_tree_order.h says how boxes get their order,
 // wide_tree_set.h how they keep it from frame to frame, wide_tree_pairs.inl and wide_tree_changes.inl how pairs are
-// found.
+// found, wide_tree_batch.inl how many boxes are searched together.
 //
 // Groups, not single boxes, are what is tested against the tree: a box of the acceptance set (half extents .25 to .5,
 // centres in a cube of side 1.5 n^(1/3)) costs 6.6 tests of eight lanes, or 3.7 of sixteen, from n = 1000 to 100 000
@@ -12,9 +12,15 @@
 // How far from what the machine can do (10 000 boxes, one Zen 5 core at about 4 GHz, eight lanes, measured): at two
 // comparisons a cycle the tests alone would take 5 ns a box; the search takes about 14 ns, the rest being the packing
 // of the boxes that reach into a neighbour, the ends of loops and the writing of pairs. A build takes about 9 ns: it
-// reads the 32 bytes of a box twice and the 16 of its centre seven times. Both together are 23 ns a box. A frame in
-// which 5 % of the boxes move costs 3.6 ns a box, 70 ns for each that moves: 16 % of building and searching anew at 10
-// 000 boxes alone on the machine, up to 31 % where caches are shared (docs/broad-phase.md); two thirds are the search.
+// reads the 32 bytes of a box twice and the 16 of its centre seven times. Both together are 23 ns a box.
+//
+// A frame in which 5 % of the boxes move. A changed box is near two groups of those of any number of boxes (1.7 to 2.0
+// from 1000 to 100 000), and is tested against both as it was and as it is: 16 tests of sixteen lanes, 96 comparisons
+// of 64 bytes, over 3 kB of groups, beside its 32 bytes of before and after and the tests of one to five blocks above.
+// At one comparison a cycle that alone is 27 ns for each that moves, 5 % of building and searching anew; all of it
+// takes 90 to 110 ns up to 10 000 boxes and 170 at 100 000, where groups and changed boxes come from the outer caches:
+// a sixth to a quarter of building and searching anew. More than half is the search, a fifth the gathering of the
+// changed boxes, a tenth each the sorting of what begins and ends and the bounds.
 #pragma once
 
 #include "base/memory.h"
@@ -46,6 +52,9 @@ public:
     // visit(index) for every box of both sets that overlaps, each once.
     template <class Visit>
     void visit_overlapping(const float lower[3], const float upper[3], Visit&& visit) const;
+    // The hits of the queries [begin, end) as (query, index), in an order of queries that depends on where the range is
+    // cut; those of one query always come in one order.
+    void find_hits(const BoxQuery* queries, int begin, int end, PairList& out) const;
     // Offer every box of both sets that could better the best hit.
     void cast(BoxCast& cast) const;
     void nearest(NearestBox& nearest) const;

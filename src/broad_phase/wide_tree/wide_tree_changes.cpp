@@ -99,9 +99,10 @@ void WideTreeSet::swap_places(uint32_t a, uint32_t b) {
 }
 
 void WideTreeSet::touch(uint32_t group) {
-    if (is_touched_[group]) return;
+    touched_.reserve(touched_.size() + 1);
+    touched_.data()[touched_.size()] = group;
+    touched_.resize_unset(touched_.size() + !is_touched_[group]);
     is_touched_[group] = 1;
-    touched_.push_back(group);
 }
 
 bool WideTreeSet::mark(uint32_t place) {
@@ -125,28 +126,39 @@ void WideTreeSet::sort_touched() {
     }
 }
 
+// First the lanes of the marks, so that what the rows need can be asked for some rows ahead: it is scattered over the
+// memory of both frames.
 void WideTreeSet::gather(const BroadBox* boxes, Array<uint32_t>& jumped) {
+    constexpr size_t ahead = 12;
     sort_touched();
     rows_.resize_unset(static_cast<size_t>(marks_));
-    row_lane_.resize_unset(static_cast<size_t>(marks_));
-    uint32_t n = 0;
+    row_lane_.resize_unset(static_cast<size_t>(marks_) + ahead);
+    size_t marks = 0;
     for (uint32_t g : touched_) {
-        first_row_[g] = n;
-        const Bounds6 home = home_[g];
-        const BoxGroup& group = groups_[g];
         for (uint64_t left = changed_[g]; left; left &= left - 1) {
-            uint32_t i = static_cast<uint32_t>(__builtin_ctzll(left)), lane = g * group_lanes + i;
-            WideTreeChange& row = rows_[n];
-            row.after = boxes[place_[lane]];
-            read_lane(group, i, row.before);
-            row_lane_[n] = lane;
-            if (contains(home, row.after) && row.after.index == row.before.index) {
-                ++n;
-                continue;
-            }
-            changed_[g] &= ~(uint64_t{1} << i);
-            jumped.push_back(place_[lane]);
+            row_lane_[marks++] = g * group_lanes + static_cast<uint32_t>(__builtin_ctzll(left));
         }
+    }
+    for (size_t i = 0; i < ahead && marks > 0; ++i) row_lane_[marks + i] = row_lane_[marks - 1];
+    uint32_t n = 0, last = no_box;
+    for (size_t i = 0; i < marks; ++i) {
+        const uint32_t lane = row_lane_[i], g = lane / group_lanes, soon = row_lane_[i + ahead];
+        __builtin_prefetch(&boxes[place_[soon]]);
+        for (int k = 0; k < bound_count; ++k) {
+            __builtin_prefetch(&groups_[soon / group_lanes].bounds[k][soon % group_lanes], 1);
+        }
+        if (g != last) first_row_[g] = n;
+        last = g;
+        WideTreeChange& row = rows_[n];
+        row.after = boxes[place_[lane]];
+        read_lane(groups_[g], lane % group_lanes, row.before);
+        row_lane_[n] = lane;
+        if (contains(home_[g], row.after) && row.after.index == row.before.index) {
+            ++n;
+            continue;
+        }
+        changed_[g] &= ~(uint64_t{1} << lane % group_lanes);
+        jumped.push_back(place_[lane]);
     }
     rows_.resize_unset(n);
     row_lane_.resize_unset(n);
@@ -176,7 +188,9 @@ void WideTreeSet::remove(uint32_t place) {
     touch(lane / group_lanes);
 }
 
-WideTreeChanges WideTreeSet::changes() const { return {changed_.data(), first_row_.data(), rows_.data()}; }
+WideTreeChanges WideTreeSet::changes() const {
+    return {changed_.data(), first_row_.data(), rows_.data(), row_lane_.data()};
+}
 
 // The bounds of the levels above the touched groups from those below.
 void WideTreeSet::raise_touched() {

@@ -54,6 +54,7 @@ struct WideTreeChanges {
     const uint64_t* changed = nullptr;     // of each group, the lanes that change
     const uint32_t* first = nullptr;       // of each group with such lanes, where its rows begin
     const WideTreeChange* rows = nullptr;  // in the order of lanes
+    const uint32_t* lanes = nullptr;       // of each row, counted through all groups
 };
 
 // Where a query writes the indices of hits: from `next` on there is room for a group's, or `full` has to be called.
@@ -71,12 +72,14 @@ struct WideTreeKernels {
     void (*block_bounds)(const BoundsBlock& block, Bounds6& bounds);
     // Pairs of the groups [begin, end) of `moving`: within each, with the groups after it, with those of `fixed`.
     void (*find_pairs)(const WideTreeView& moving, const WideTreeView& fixed, int begin, int end, PairStream& out);
-    // Pairs that begin (written a < b) and end (written a > b) with the changes of the groups named by `groups`, of
-    // which those in [begin, end) are searched.
+    // Pairs that begin (written a < b) and end (written a > b) with the rows [begin, end) of the changes, in an order
+    // that depends on where the ranges are cut.
     void (*find_changes)(const WideTreeView& moving, const WideTreeView& fixed, const WideTreeChanges& changes,
-                         const uint32_t* groups, int begin, int end, PairStream& out);
+                         int begin, int end, PairStream& out);
     // Queries; see BroadPhase. The box of the first is finite.
     void (*find_overlapping)(const WideTreeView& tree, const Bounds6& box, IndexStream& out);
+    // The hits of the queries [begin, end) as (query, index), in any order; those of one query in the order of groups.
+    void (*find_hits)(const WideTreeView& tree, const BoxQuery* queries, int begin, int end, PairStream& out);
     void (*cast)(const WideTreeView& tree, BoxCast& cast);
     void (*nearest)(const WideTreeView& tree, NearestBox& nearest);
 };

@@ -20,14 +20,16 @@ LENDULET_FORCE_INLINE int take_lane(uint64_t& lanes) {
 
 #include "broad_phase/wide_tree/wide_tree_pairs.inl"
 
+#include "broad_phase/wide_tree/wide_tree_batch.inl"
+
 #include "broad_phase/wide_tree/wide_tree_changes.inl"
 
 #include "broad_phase/wide_tree/wide_tree_queries.inl"
 
 template <class F>
 constexpr WideTreeKernels make_wide_tree_kernels() {
-    return {lanes_of<F>,     fill_group<F>,       bounds_of_group<F>,    bounds_of_block<F>,      find_pairs<F>,
-            find_changes<F>, find_overlapping<F>, find_best<F, BoxCast>, find_best<F, NearestBox>};
+    return {lanes_of<F>,     fill_group<F>,       bounds_of_group<F>, bounds_of_block<F>,    find_pairs<F>,
+            find_changes<F>, find_overlapping<F>, find_hits<F>,       find_best<F, BoxCast>, find_best<F, NearestBox>};
 }
 
 }  // namespace

@@ -13,6 +13,63 @@ void find_overlapping(const WideTreeView& tree, const Bounds6& bounds, IndexStre
     });
 }
 
+template <class F>
+class QuerySearch : public BatchSearch<F, QuerySearch<F>> {
+    using Base = BatchSearch<F, QuerySearch<F>>;
+    using typename Base::List;
+
+public:
+    QuerySearch(const WideTreeView& tree, PairStream& out) : Base(tree), out_(out) {}
+
+    // An infinite side reaches as far as the largest float, and no empty lane.
+    void search(const BoxQuery* queries, int first, int count) {
+        first_ = static_cast<uint32_t>(first);
+        const Quad most = splat<Quad>(FLT_MAX);
+        for (int i = 0; i < count; ++i) {
+            const BoxQuery& q = queries[first + i];
+            this->set(i, maximum(Quad{q.lower[0], q.lower[1], q.lower[2], 0}, -most),
+                      minimum(Quad{q.upper[0], q.upper[1], q.upper[2], 0}, most));
+        }
+        this->run(count);
+    }
+
+private:
+    friend Base;
+    struct Hits {
+        uint64_t lanes;
+        uint32_t entry;
+    };
+
+    void look(const List& list) {
+        Hits hits[List::most];
+        int n = 0;
+        for (int i = 0; i < list.count; ++i) {
+            const BoxGroup& group = this->tree_.groups[Base::node_of(list.at[i])];
+            uint64_t lanes = overlaps<F>(group, 0, group_lanes, spread<F>(this->rows_[Base::row_of(list.at[i])]));
+            hits[n] = {lanes, list.at[i]};
+            n += lanes != 0;
+        }
+        for (int i = 0; i < n; ++i) {
+            if (out_.end - out_.next < static_cast<ptrdiff_t>(PairList::most_at_once)) out_.full(out_);
+            const uint32_t query = first_ + static_cast<uint32_t>(Base::row_of(hits[i].entry));
+            const BoxGroup& group = this->tree_.groups[Base::node_of(hits[i].entry)];
+            BoxPair* next = out_.next;
+            for (uint64_t lanes = hits[i].lanes; lanes;) *next++ = {query, group.index[take_lane(lanes)]};
+            out_.next = next;
+        }
+    }
+
+    PairStream& out_;
+    uint32_t first_ = 0;
+};
+
+template <class F>
+void find_hits(const WideTreeView& tree, const BoxQuery* queries, int begin, int end, PairStream& out) {
+    constexpr int most = QuerySearch<F>::most_rows;
+    QuerySearch<F> search(tree, out);
+    for (int i = begin; i < end; i += most) search.search(queries, i, end - i < most ? end - i : most);
+}
+
 // The measure of a query for boxes side by side: when a cast enters them, how far off they are.
 template <class F, class Query>
 LENDULET_FORCE_INLINE F measure_lanes(const Query& query, const float* bounds, int stride) {

@@ -60,13 +60,12 @@ void WideTree::adopt_removed(const BroadBox* boxes, int count, const uint32_t* c
 }
 
 void WideTree::find_changes(TaskPool& tasks) {
-    constexpr int grain = 8;  // groups
+    constexpr int grain = 32;  // boxes
     const WideTreeView moving = moving_.view(), fixed = fixed_.view();
     const WideTreeChanges changes = moving_.changes();
-    const Array<uint32_t>& groups = moving_.changed_groups();
-    chunks_.search(tasks, groups.count(), grain, changes_, [&](int begin, int end, PairList& list) {
+    chunks_.search(tasks, moving_.changed_count(), grain, changes_, [&](int begin, int end, PairList& list) {
         PairRoom room(list);
-        kernels_.find_changes(moving, fixed, changes, groups.data(), begin, end, room);
+        kernels_.find_changes(moving, fixed, changes, begin, end, room);
     });
     for (const WideTreeSet* set : {&moving_, &fixed_}) {
         for (const BroadBox& box : set->unbounded()) {

@@ -81,4 +81,27 @@ LENDULET_FORCE_INLINE void store_packed(float* to, uint32_t bits, F value) {
     for (; bits; bits &= bits - 1) *to++ = lane(value, __builtin_ctz(bits));
 }
 
+// Writes first + i for each bit i of `bits`, rising, to `to`, which needs room for all lanes of F: what stands behind
+// them is unset.
+template <class F>
+LENDULET_FORCE_INLINE void store_numbers(uint32_t* to, uint32_t bits, uint32_t first) {
+#if defined(__AVX512F__)
+    if constexpr (sizeof(F) == 64) {
+        const __m512i counts = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
+        __m512i all = _mm512_add_epi32(_mm512_set1_epi32(static_cast<int>(first)), counts);
+        _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), all));
+        return;
+    }
+#endif
+#if defined(__AVX2__)
+    if constexpr (sizeof(F) == 32) {
+        __m128i bytes = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(detail::lanes_of_byte.lane[bits]));
+        __m256i all = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)), _mm256_cvtepu8_epi32(bytes));
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), all);
+        return;
+    }
+#endif
+    for (; bits; bits &= bits - 1) *to++ = first + static_cast<uint32_t>(__builtin_ctz(bits));
+}
+
 }  // namespace lendulet
