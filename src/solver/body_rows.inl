@@ -127,8 +127,8 @@ inline constexpr float quick = 0.2f;       // from here on 6 iterations
 // a body tumbles: the rule keeps energy because it is the same backwards, and with parts that came and went a box at
 // 100 rad/s about its middle axis gained 3 % of it in a minute. Kinematic lanes (no inertia) turn with their given w.
 // What a lane does never depends on its neighbours; only work that no lane of a block asks for is left out.
-// A turn of many parts is rounded once: at 1000 rad/s about the middle axis the parts' rounding took 0.02 % of the energy
-// a minute.
+// A turn of many parts is rounded once: at 1000 rad/s about the middle axis the parts' rounding took 0.02 % of the
+// energy a minute.
 template <int W>
 LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float, W>> dq, QuatT<Wide<float, W>> q0,
                                                                Vec3T<Wide<float, W>> L, Vec3T<Wide<float, W>> inverse,

@@ -93,8 +93,7 @@ void add_turn(Quat& q, Vec3& low, Quat dq) {
     const float grow = dq.w > 0.0f ? -(dq.x * dq.x + dq.y * dq.y + dq.z * dq.z) / (1.0f + dq.w) : dq.w - 1.0f;
     const double x = q.x, y = q.y, z = q.z, w = q.w;
     const auto lack = static_cast<float>(0.5 * (1.0 - (x * x + y * y + z * z + w * w)));
-    const Quat d =
-        Quat{dq.x + lack * dq.x, dq.y + lack * dq.y, dq.z + lack * dq.z, grow + lack * dq.w} * q;
+    const Quat d = Quat{dq.x + lack * dq.x, dq.y + lack * dq.y, dq.z + lack * dq.z, grow + lack * dq.w} * q;
     const Quat t{q.x + d.x, q.y + d.y, q.z + d.z, q.w + d.w};
     const Quat lost{d.x - (t.x - q.x), d.y - (t.y - q.y), d.z - (t.z - q.z), d.w - (t.w - q.w)};
     const Quat turn = lost * conjugate(t);

@@ -27,7 +27,11 @@ LENDULET_FORCE_INLINE WideBox<Wide<float, W>> load_box(const ShapeFrame* frames,
     gather4<W>(base, index, frame_stride, frame_half, half);
     gather4<W>(base, index, frame_stride, frame_low, low);
     Mat3T<F> m = rotation_matrix<F>(QuatT<F>{q[0], q[1], q[2], q[3]}, splat<F>(1.0f));
-    return {{m.x, m.y, m.z}, {x[0], x[1], x[2]}, {arm[0], arm[1], arm[2]}, {half[0], half[1], half[2]}, {low[1], low[2], low[3]}};
+    return {{m.x, m.y, m.z},
+            {x[0], x[1], x[2]},
+            {arm[0], arm[1], arm[2]},
+            {half[0], half[1], half[2]},
+            {low[1], low[2], low[3]}};
 }
 // From the position of one shape to that of the other.
 template <class F>

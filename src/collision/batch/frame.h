@@ -31,8 +31,8 @@ inline constexpr int frame_low = 20;  // in the quad that begins with `radius`
 // Pairs are processed in chunks of this many; index lists have room for whole blocks of the widest lanes.
 inline constexpr int batch_capacity = 256;
 
-// From the centre of mass of A's body to that of B's. 100 m from the origin positions are rounded to 7.6e-6 m; what that
-// took is kept, and with it gaps are as exact as at the origin.
+// From the centre of mass of A's body to that of B's. 100 m from the origin positions are rounded to 7.6e-6 m; what
+// that took is kept, and with it gaps are as exact as at the origin.
 template <class V>
 LENDULET_FORCE_INLINE V between_centres(V a, V a_low, V b, V b_low) {
     return (b - a) - (b_low - a_low);

@@ -294,8 +294,7 @@ private:
         const ShapeFrame &fa = world_.frames[a], &fb = world_.frames[b];
         float near = minimum(fa.near, fb.near);
         for (int k = 0; k < 4; ++k) pose.rotation_a[k] = fa.rotation[k], pose.rotation_b[k] = fb.rotation[k];
-        for (int k = 0; k < 3; ++k)
-            pose.offset[k] = between_centres(fa.centre[k], fa.low[k], fb.centre[k], fb.low[k]);
+        for (int k = 0; k < 3; ++k) pose.offset[k] = between_centres(fa.centre[k], fa.low[k], fb.centre[k], fb.low[k]);
         pose.tolerance = count > 0 ? kept_share * near : 1e30f;
         pose.clearance = count > 0 ? margin + near : clearance;
     }
