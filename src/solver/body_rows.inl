@@ -141,7 +141,8 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
     F iterations = select(wish > splat<F>(0.01f), select(wish > splat<F>(0.05f), four, splat<F>(2.0f)), one);
     iterations = select(anisotropy <= one, zero, iterations);  // about a fixed axis L gives the velocity at once
     F parts = one;
-    if (mask_bits(wish > splat<F>(quick))) {
+    const bool some_quick = mask_bits(wish > splat<F>(quick)) != 0;
+    if (some_quick) {
         // |L| and the least moment do not change while it tumbles, |w| does.
         F most = maximum(maximum(inverse.x, inverse.y), inverse.z);
         F steady = select(given, wish, splat<F>(2.0f * h) * square_root(dot(L, L)) * most);
@@ -161,6 +162,10 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
             rate = select(given, w, select(splat<F>(i) < iterations, next, rate));
         }
         QuatT<F> d = multiply(turn_less_one(step * rate), q);
+        if (!some_quick) {  // one part, which is not rounded again: the same bits
+            q = {q.x + d.x, q.y + d.y, q.z + d.z, q.w + d.w};
+            break;
+        }
         add_compensated(q.x, low.x, d.x, active);
         add_compensated(q.y, low.y, d.y, active);
         add_compensated(q.z, low.z, d.z, active);
