@@ -40,7 +40,7 @@ Pose BodyStore::user_pose(uint32_t slot) const { return pose[slot] * inverse(pri
 
 void BodyStore::set_user_pose(uint32_t slot, Pose user) {
     pose[slot] = user * principal[slot];
-    momenta[slot].x_low = {};
+    momenta[slot].x_low = momenta[slot].turn_low = {};
 }
 
 Vec3 BodyStore::velocity(uint32_t slot) const {

@@ -18,10 +18,11 @@ namespace lendulet {
 
 inline constexpr uint32_t no_slot = ~0u;
 
-// The conserved state. p_low and x_low are what rounding p and the position lost so far (compensated summation), so
-// that a body that falls or glides for minutes gains exactly m g t and v t.
+// The conserved state. p_low and x_low are what rounding p and the position added to them (compensated summation), so
+// that a body that falls or glides for minutes gains exactly m g t and v t. turn_low is what rounding the orientation
+// took from it, as half a rotation vector in world axes: a top loses none of its energy by it.
 struct BodyMomenta {
-    Vec3 p, p_low, L, x_low;
+    Vec3 p, p_low, L, x_low, turn_low;
 };
 
 struct BodyMass {

@@ -74,6 +74,8 @@ void set_frame(WorldData& world, uint32_t slot, float turn) {
     f.half[0] = geometry.size.x, f.half[1] = geometry.size.y, f.half[2] = geometry.size.z;
     f.rounding = geometry.rounding;
     f.radius = info.radius;
+    const Vec3 low = world.bodies.momenta[info.body].x_low;
+    f.low[0] = low.x, f.low[1] = low.y, f.low[2] = low.z;
 }
 
 namespace {

@@ -249,7 +249,7 @@ void stop(WorldData& world, uint32_t body, const BodyPath& path, const Impact& i
         pose.position = carrier.end.position + rotate(carrier.end.orientation, arm);
         pose.orientation = normalize(carrier.end.orientation * conjugate(carrier_then.orientation) * then.orientation);
     }
-    world.bodies.momenta[body].x_low = {};
+    world.bodies.momenta[body].x_low = world.bodies.momenta[body].turn_low = {};
     keep_energy(world.bodies, body, path.end.orientation);
     BodyInfo& info = world.bodies.info[body];
     info.stopped = true;

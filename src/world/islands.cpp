@@ -149,7 +149,8 @@ void lay_to_rest(WorldData& world) {
             IslandLoad& load = world.island_loads[slot];
             load.slept = load.step == world.steps;
         }
-        world.bodies.momenta[slot] = {};
+        BodyMomenta& m = world.bodies.momenta[slot];  // where it is stays as it was found
+        m = {{}, {}, {}, m.x_low, m.turn_low};
         world.bodies.change[slot] = {};
         world.movers.leaving = true;  // once this step is over
     }

@@ -40,6 +40,7 @@ void pack_body(WorldData& world, size_t i, float dt) {
     world.solver_bodies.place[k] = place;
     BodyState s{};
     s.inverse_mass = dynamic ? mass.inverse_mass : 0.0f;
+    put(s.dq, bodies.momenta[slot].turn_low);
     s.dq[3] = 1.0f;
     world.solver_bodies.state[k] = s;
 
@@ -85,6 +86,20 @@ void add_displacement(Position& x, Vec3& low, Vec3 dx) {
     low = (t - x) - y;
     x = t;
 }
+// q <- dq q, where dq began with what rounding q took before, and leaves that anew in `low`. An orientation is rounded
+// to 6e-8 rad, in every step again and not evenly: in ten minutes of steps of 1/240 s a top fell by 0.015 degrees.
+void add_turn(Quat& q, Vec3& low, Quat dq) {
+    // dq (1 + half of what |q| lacks of 1) - 1, without cancellation.
+    const float grow = dq.w > 0.0f ? -(dq.x * dq.x + dq.y * dq.y + dq.z * dq.z) / (1.0f + dq.w) : dq.w - 1.0f;
+    const double x = q.x, y = q.y, z = q.z, w = q.w;
+    const auto lack = static_cast<float>(0.5 * (1.0 - (x * x + y * y + z * z + w * w)));
+    const Quat d = Quat{dq.x + lack * dq.x, dq.y + lack * dq.y, dq.z + lack * dq.z, grow + lack * dq.w} * q;
+    const Quat t{q.x + d.x, q.y + d.y, q.z + d.z, q.w + d.w};
+    const Quat lost{d.x - (t.x - q.x), d.y - (t.y - q.y), d.z - (t.z - q.z), d.w - (t.w - q.w)};
+    const Quat turn = lost * conjugate(t);
+    low = {turn.x, turn.y, turn.z};
+    q = t;
+}
 
 // Impulses of contacts with more substeps from units of the setting's substep to those of their own, or back: powers of
 // two, so nothing is rounded.
@@ -114,6 +129,7 @@ void fly(WorldData& world, uint32_t slot, float dt) {
     BodyMomenta& momenta = bodies.momenta[slot];
     add_displacement(bodies.pose[slot].position, momenta.x_low, s.x);
     bodies.pose[slot].orientation = s.q;
+    momenta.turn_low = {};
     momenta.p = s.p;
     momenta.L = s.L;
 }
@@ -132,7 +148,7 @@ void unpack_body(WorldData& world, size_t i, float dt) {
     Pose& pose = bodies.pose[slot];
     BodyMomenta& momenta = bodies.momenta[slot];
     add_displacement(pose.position, momenta.x_low, get(s.dp));
-    pose.orientation = normalize(Quat{s.dq[0], s.dq[1], s.dq[2], s.dq[3]} * pose.orientation);
+    add_turn(pose.orientation, momenta.turn_low, {s.dq[0], s.dq[1], s.dq[2], s.dq[3]});
     if (!dynamic) return;
     if (m.free > 0.0f) {  // exactly: m g dt, not what is left of it after adding to a large velocity
         Decay whole = decay(info.linear_damping, dt);

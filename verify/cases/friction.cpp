@@ -66,9 +66,10 @@ Stop slide_to_stop(const Setting& s, Ground ground, float heading, float box_tur
 
 }  // namespace
 
-// It slips just where mu < tan 45 deg, and then by g (sin - mu cos) t^2 / 2.
+// It slips just where mu < tan 45 deg, and then by g (sin - mu cos) t^2 / 2. Creep is watched for 20 s, as a place 100
+// m out is told in steps of 7.6e-6 m: in less time one such step would count as more than is allowed.
 void stick_slip_threshold(const Setting& s, Figures& out) {
-    constexpr double seconds = 5.0;
+    constexpr double seconds = 5.0, watched = 20.0;
     const int stride = 100 / s.scaled(100, 5);
     Quantity &slipping = out.quantity("largest mu that slips", at_most(0.002)),
              &sticking = out.quantity("smallest mu that sticks", at_least(0.002)),
@@ -89,8 +90,8 @@ void stick_slip_threshold(const Setting& s, Figures& out) {
         slipping.add(largest_slip, 1.0);
         sticking.add(smallest_stick, 1.0);
         wrong.add(wrong_count);
-        Slide held = slide_on_slope(s, ground, 1.2f, seconds);
-        creep.add((held.distance - held.early_distance) / (0.5 * seconds));
+        Slide held = slide_on_slope(s, ground, 1.2f, 2.0 * watched);
+        creep.add((held.distance - held.early_distance) / watched);
     }
 }
 

@@ -13,24 +13,30 @@ struct WideBox {
     Vec3T<F> axis[3];  // in the world
     Vec3T<F> centre, arm;
     F half[3];
+    Vec3T<F> low;
 };
 
 template <int W>
 LENDULET_FORCE_INLINE WideBox<Wide<float, W>> load_box(const ShapeFrame* frames, const int32_t* index) {
     using F = Wide<float, W>;
     const float* base = floats_of(frames);
-    F q[4], x[4], arm[4], half[4];
+    F q[4], x[4], arm[4], half[4], low[4];
     gather4<W>(base, index, frame_stride, frame_rotation, q);
     gather4<W>(base, index, frame_stride, frame_centre, x);
     gather4<W>(base, index, frame_stride, frame_arm, arm);
     gather4<W>(base, index, frame_stride, frame_half, half);
+    gather4<W>(base, index, frame_stride, frame_low, low);
     Mat3T<F> m = rotation_matrix<F>(QuatT<F>{q[0], q[1], q[2], q[3]}, splat<F>(1.0f));
-    return {{m.x, m.y, m.z}, {x[0], x[1], x[2]}, {arm[0], arm[1], arm[2]}, {half[0], half[1], half[2]}};
+    return {{m.x, m.y, m.z},
+            {x[0], x[1], x[2]},
+            {arm[0], arm[1], arm[2]},
+            {half[0], half[1], half[2]},
+            {low[1], low[2], low[3]}};
 }
 // From the position of one shape to that of the other.
 template <class F>
 LENDULET_FORCE_INLINE Vec3T<F> offset_between(const WideBox<F>& a, const WideBox<F>& b) {
-    return (b.centre - a.centre) + (b.arm - a.arm);
+    return between_centres(a.centre, a.low, b.centre, b.low) + (b.arm - a.arm);
 }
 
 template <class F>

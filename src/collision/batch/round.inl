@@ -16,7 +16,7 @@ LENDULET_FORCE_INLINE F step_margin(F near, const F* velocity_a, const F* veloci
 template <class F>
 struct WideRound {
     QuatT<F> rotation;
-    Vec3T<F> centre, arm, half;  // of the body, of the shape from there; half extents of the core
+    Vec3T<F> centre, low, arm, half;  // of the body, of the shape from there; half extents of the core
     F rounding;
     F near, velocity[4];
 };
@@ -26,17 +26,25 @@ LENDULET_FORCE_INLINE WideRound<Wide<float, W>> load_round(const ShapeFrame* fra
     using F = Wide<float, W>;
     const float* base = floats_of(frames);
     WideRound<F> r;
-    F q[4], x[4], arm[4], size[4];
+    F q[4], x[4], arm[4], size[4], low[4];
     gather4<W>(base, index, frame_stride, frame_rotation, q);
     gather4<W>(base, index, frame_stride, frame_centre, x);
     gather4<W>(base, index, frame_stride, frame_velocity, r.velocity);
     gather4<W>(base, index, frame_stride, frame_arm, arm);
     gather4<W>(base, index, frame_stride, frame_half, size);
+    gather4<W>(base, index, frame_stride, frame_low, low);
     r.rotation = {q[0], q[1], q[2], q[3]};
     r.centre = {x[0], x[1], x[2]}, r.near = x[3];
+    r.low = {low[1], low[2], low[3]};
     r.arm = {arm[0], arm[1], arm[2]};
     r.half = {size[0], size[1], size[2]}, r.rounding = size[3];
     return r;
+}
+
+// From the position of one shape to that of the other.
+template <class F>
+LENDULET_FORCE_INLINE Vec3T<F> offset_between(const WideRound<F>& a, const WideRound<F>& b) {
+    return between_centres(a.centre, a.low, b.centre, b.low) + (b.arm - a.arm);
 }
 
 // What one block of pairs gives. Positions from the shape of A, as the block has it.
@@ -54,7 +62,7 @@ LENDULET_FORCE_INLINE void store_round(BatchManifold* out, const RoundBatch& bat
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
     auto swap = load_wide<F>(batch.exchanged + k) > zero;
     // From the centre of mass of the one that the caller calls A.
-    Vec3T<F> offset = (b.centre - a.centre) + (b.arm - a.arm);
+    Vec3T<F> offset = offset_between(a, b);
     Vec3T<F> origin = select(swap, b.arm - offset, a.arm), normal = select(swap, -m.normal, m.normal);
     F radius_a = select(swap, b.rounding, a.rounding), radius_b = select(swap, a.rounding, b.rounding);
     F follow = select(swap, one - m.follow, m.follow);
@@ -162,7 +170,7 @@ void collide_segments(RoundBatch& batch, BatchManifold* out) {
         F margin = step_margin(minimum(a.near, b.near), a.velocity, b.velocity, batch.dt, batch.fall);
         Vec3T<F> axis_a = a.half.y * rotation_matrix<F>(a.rotation, one).y;
         Vec3T<F> axis_b = b.half.y * rotation_matrix<F>(b.rotation, one).y;
-        const SegmentPair<F> p(axis_a, axis_b, (b.centre - a.centre) + (b.arm - a.arm));
+        const SegmentPair<F> p(axis_a, axis_b, offset_between(a, b));
         Vec3T<F> on_a = p.s * p.a, between = (p.offset + p.t * p.b) - on_a;
         F radii = a.rounding + b.rounding, distance = length(between);
         // Where the axes meet, out along their common perpendicular on the side of B's centre.
@@ -200,7 +208,7 @@ void collide_box_balls(RoundBatch& batch, BatchManifold* out) {
         const WideRound<F> a = load_round<W>(batch.frames, batch.a + k), b = load_round<W>(batch.frames, batch.b + k);
         F margin = step_margin(minimum(a.near, b.near), a.velocity, b.velocity, batch.dt, batch.fall);
         Mat3T<F> turn = rotation_matrix<F>(a.rotation, one);
-        Vec3T<F> offset = (b.centre - a.centre) + (b.arm - a.arm);
+        Vec3T<F> offset = offset_between(a, b);
         Vec3T<F> centre{dot(turn.x, offset), dot(turn.y, offset), dot(turn.z, offset)}, h = a.half;
         Vec3T<F> core{maximum(-h.x, minimum(h.x, centre.x)), maximum(-h.y, minimum(h.y, centre.y)),
                       maximum(-h.z, minimum(h.z, centre.z))};

@@ -24,7 +24,8 @@ CollidePair collide_input(const WorldData& world, const ColliderPair& p, float m
     const ShapeFrame &fa = world.frames[a], &fb = world.frames[b];
     auto quat = [](const float* q) { return Quat{q[0], q[1], q[2], q[3]}; };
     auto vector = [](const float* v) { return Vec3{v[0], v[1], v[2]}; };
-    Vec3 offset = (vector(fb.centre) - vector(fa.centre)) + (vector(fb.arm) - vector(fa.arm));
+    Vec3 offset = between_centres(vector(fa.centre), vector(fa.low), vector(fb.centre), vector(fb.low)) +
+                  (vector(fb.arm) - vector(fa.arm));
     return {&world.colliders.geometry[a],
             &world.colliders.geometry[b],
             quat(fa.rotation),
@@ -293,7 +294,7 @@ private:
         const ShapeFrame &fa = world_.frames[a], &fb = world_.frames[b];
         float near = minimum(fa.near, fb.near);
         for (int k = 0; k < 4; ++k) pose.rotation_a[k] = fa.rotation[k], pose.rotation_b[k] = fb.rotation[k];
-        for (int k = 0; k < 3; ++k) pose.offset[k] = fb.centre[k] - fa.centre[k];
+        for (int k = 0; k < 3; ++k) pose.offset[k] = between_centres(fa.centre[k], fa.low[k], fb.centre[k], fb.low[k]);
         pose.tolerance = count > 0 ? kept_share * near : 1e30f;
         pose.clearance = count > 0 ? margin + near : clearance;
     }

@@ -9,7 +9,7 @@ namespace {
 constexpr float same_point_distance = 0.05f;
 
 void set_centres(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b) {
-    for (int k = 0; k < 3; ++k) r.arm_offset[k] = b.centre[k] - a.centre[k];
+    for (int k = 0; k < 3; ++k) r.arm_offset[k] = between_centres(a.centre[k], a.low[k], b.centre[k], b.low[k]);
 }
 
 void write_surface(const ContactSurface& surface, ContactRecord& r) {

@@ -7,7 +7,8 @@ struct WideMotion {
     Vec3T<F> shift;           // of B's centre of mass relative to that of A
 };
 
-template <int W>
+// `exactly`: with what rounding took from places.
+template <int W, bool exactly>
 LENDULET_FORCE_INLINE WideMotion<Wide<float, W>> motion_since(const ShapeFrame* frames, const KeptPose* poses,
                                                               const int32_t* a, const int32_t* b, const int32_t* pose,
                                                               Wide<float, W>& near, Wide<float, W>& tolerance) {
@@ -26,9 +27,15 @@ LENDULET_FORCE_INLINE WideMotion<Wide<float, W>> motion_since(const ShapeFrame* 
     auto turn = [](const F* q, const F* kept) {
         return multiply(QuatT<F>{q[0], q[1], q[2], q[3]}, QuatT<F>{-kept[0], -kept[1], -kept[2], kept[3]});
     };
-    return {turn(qa, kept_a),
-            turn(qb, kept_b),
-            {(xb[0] - xa[0]) - offset[0], (xb[1] - xa[1]) - offset[1], (xb[2] - xa[2]) - offset[2]}};
+    Vec3T<F> between{xb[0] - xa[0], xb[1] - xa[1], xb[2] - xa[2]};
+    if constexpr (exactly) {
+        F la[4], lb[4];
+        gather4<W>(floats_of(frames), a, frame_stride, frame_low, la);
+        gather4<W>(floats_of(frames), b, frame_stride, frame_low, lb);
+        between = between_centres(Vec3T<F>{xa[0], xa[1], xa[2]}, Vec3T<F>{la[1], la[2], la[3]},
+                                  Vec3T<F>{xb[0], xb[1], xb[2]}, Vec3T<F>{lb[1], lb[2], lb[3]});
+    }
+    return {turn(qa, kept_a), turn(qb, kept_b), between - Vec3T<F>{offset[0], offset[1], offset[2]}};
 }
 
 template <class F>
@@ -48,7 +55,7 @@ void test_motion(MotionBatch& batch) {
         }
         const int32_t *a = batch.a + k, *b = batch.b + k, *pose = batch.pose + k;
         F near, tolerance, va[4], vb[4], arm_a[4], arm_b[4], state[4];
-        WideMotion<F> m = motion_since<W>(batch.frames, batch.poses, a, b, pose, near, tolerance);
+        WideMotion<F> m = motion_since<W, false>(batch.frames, batch.poses, a, b, pose, near, tolerance);
         gather4<W>(floats_of(batch.frames), a, frame_stride, frame_velocity, va);
         gather4<W>(floats_of(batch.frames), b, frame_stride, frame_velocity, vb);
         gather4<W>(floats_of(batch.frames), a, frame_stride, frame_arm, arm_a);
@@ -78,7 +85,7 @@ void refresh(RefreshBatch& batch) {
             a[l] = batch.a[i], b[l] = batch.b[i], pose[l] = batch.pose[i], record[l] = batch.record[i];
         }
         F near, tolerance, normal[4], point[4][4], radii[4], offset[4], found[4];
-        WideMotion<F> m = motion_since<W>(batch.frames, batch.poses, a, b, pose, near, tolerance);
+        WideMotion<F> m = motion_since<W, true>(batch.frames, batch.poses, a, b, pose, near, tolerance);
         gather4<W>(base, record, stride, 0, normal);
         for (int j = 0; j < 4; ++j) gather4<W>(base, record, stride, 16 + 4 * j, point[j]);
         gather4<W>(base, record, stride, 32, radii);

@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr char magic[8] = {'L', 'E', 'N', 'D', 'S', 'N', 'A', 'P'};
-constexpr uint32_t version = 3;
+constexpr uint32_t version = 4;
 constexpr size_t header_bytes = sizeof magic + 2 * sizeof(uint32_t), checksum_bytes = sizeof(uint64_t);
 
 uint64_t checksum(std::span<const uint8_t> bytes) {
@@ -107,7 +107,7 @@ void body(Bytes& bytes, SavedBody& b) {
     if (b.fixed) return;
     flags(bytes, b.mover);
     bytes(b.pose, b.still_time);
-    if (b.asleep) bytes(b.momenta.x_low);
+    if (b.asleep) bytes(b.momenta.x_low, b.momenta.turn_low);
     else bytes(b.momenta, b.change);
     if (b.has_forces) bytes(b.forces);
     if (b.loaded) bytes(b.substeps, b.waited, b.calm);

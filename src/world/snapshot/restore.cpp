@@ -31,8 +31,9 @@ bool good_body(const SavedBody& b) {
     const float orientation[4] = {q.x, q.y, q.z, q.w};
     return is_finite(from_origin(b.pose.position)) && is_unit(orientation, 4) && is_finite(b.momenta.p) &&
            is_finite(b.momenta.L) && is_finite(b.momenta.p_low) && is_finite(b.momenta.x_low) &&
-           is_finite(b.change.v) && is_finite(b.change.L) && is_finite(b.forces.force) && is_finite(b.forces.torque) &&
-           is_finite(b.still_time) && b.substeps < substep_classes;
+           is_finite(b.momenta.turn_low) && is_finite(b.change.v) && is_finite(b.change.L) &&
+           is_finite(b.forces.force) && is_finite(b.forces.torque) && is_finite(b.still_time) &&
+           b.substeps < substep_classes;
 }
 
 bool good_contact(const SavedContact& c) {
