@@ -58,7 +58,7 @@ void make_joints_ready(WorldData& world, size_t joints) {
 // page as contacts do.
 void expect_contacts(WorldData& world, size_t colliders) {
     colliders = std::min(colliders, most_expected);
-    if (colliders < fewest_expected || colliders <= world.expected) return;
+    if (world.contacts_given || colliders < fewest_expected || colliders <= world.expected) return;
     world.expected = colliders;
     world.pairs.reserve(pairs_in_drum * colliders);
     const size_t contacts = contacts_in_drum * colliders;
@@ -68,7 +68,7 @@ void expect_contacts(WorldData& world, size_t colliders) {
 
 void expect_mesh_contacts(WorldData& world) {
     const size_t contacts = world.pairs.near_triangles.capacity() * max_mesh_manifolds;
-    if (contacts > 0) reserve_records(world, contacts + contacts_in_drum * std::min(world.expected, most_expected));
+    if (contacts > 0 && !world.contacts_given) reserve_records(world, contacts + contacts_in_drum * world.expected);
 }
 
 Status World::reserve(const Capacity& capacity) {
@@ -84,8 +84,8 @@ Status World::reserve(const Capacity& capacity) {
     const auto bodies = static_cast<size_t>(capacity.bodies), joints = static_cast<size_t>(capacity.joints);
     const size_t contacts = capacity.contacts > 0 ? static_cast<size_t>(capacity.contacts) : contacts_per_body * bodies;
     if (bodies > 0) make_bodies_ready(world, bodies);
-    if (capacity.contacts > 0) world.expected = most_expected;  // who says it is taken at his word
-    else expect_contacts(world, bodies);
+    if (capacity.contacts > 0) world.contacts_given = true;
+    expect_contacts(world, bodies);
     if (contacts > 0) make_contacts_ready(world, contacts);
     if (joints > 0) make_joints_ready(world, joints);
     const size_t entries = world.solver_bodies.state.capacity();

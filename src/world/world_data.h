@@ -183,7 +183,8 @@ struct WorldData {
     SolverPart parts[substep_classes];
     int hard_bodies = 0;  // of classes above the setting's
     ScheduleRoom schedule_room;
-    size_t expected = 0;  // colliders for whose contacts there is room, see expect_contacts()
+    size_t expected = 0;          // colliders for whose contacts there is room, see expect_contacts()
+    bool contacts_given = false;  // World::reserve() was told how many: none are expected
     Solver solvers[substep_classes];
     Array<uint32_t> island_parent;  // union-find over body slots
     Array<float> island_still;

@@ -1,6 +1,7 @@
 // Memory: everything comes through the hook, a busy world's step takes none, and a dead world has given all back.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -31,7 +32,7 @@ namespace lendulet::test {
 namespace {
 
 struct Counter {
-    std::atomic<long> allocations{0}, frees{0}, live_bytes{0}, misaligned{0};
+    std::atomic<long> allocations{0}, frees{0}, live_bytes{0}, misaligned{0}, largest{0};  // `largest`: at once
 
     AllocatorHook hook() {
         return {this,
@@ -39,6 +40,7 @@ struct Counter {
                     Counter& c = *static_cast<Counter*>(user);
                     c.allocations.fetch_add(1);
                     c.live_bytes.fetch_add(static_cast<long>(bytes));
+                    c.largest = std::max(c.largest.load(), static_cast<long>(bytes));
                     size_t rounded = (bytes + alignment - 1) / alignment * alignment;
                     return std::aligned_alloc(alignment, rounded);
                 },
@@ -161,6 +163,45 @@ TEST(Reserve, RefusesCountsThatCannotBe) {
         EXPECT_NE(refused.error().message.find("reserve"), std::string::npos);
     }
     EXPECT_TRUE(world.reserve({}));
+}
+
+// Balls that come together in a heap, from far enough to touch nothing at first.
+World falling_balls(Counter& counter, const Capacity& room) {
+    World world = WorldBuilder{}.sleep(false).allocator(counter.hook()).build().value();
+    world.reserve(room).value();
+    add_floor(world);
+    for (int i = 0; i < 800; ++i)
+        world
+            .add_rigid_body({.shape = Sphere{0.25f},
+                             .position = {0.6f * static_cast<float>(i % 10) + (i / 100 % 2 ? 0.25f : 0.0f),
+                                          1.0f + 0.6f * static_cast<float>(i / 100),
+                                          0.6f * static_cast<float>(i / 10 % 10) + (i / 100 % 2 ? 0.2f : 0.0f)}})
+            .value();
+    run(world, 1);
+    return world;
+}
+
+// A heap that comes together finds its room: no array with an entry for each contact is copied into a larger one.
+TEST(Reserve, AHeapFindsItsRoom) {
+    Counter counter;
+    World world = falling_balls(counter, {.bodies = 800});
+    counter.largest = 0;
+    run(world, 120);
+    ASSERT_GT(world.statistics().manifolds, 1200);
+    EXPECT_LT(counter.largest.load(), 64 * 1024);
+}
+
+// Who says how many contacts there will be is given room for those, and more when more come.
+TEST(Reserve, TakesACountOfContactsAtItsWord) {
+    Counter expecting, told;
+    World open = falling_balls(expecting, {.bodies = 800}),
+          exact = falling_balls(told, {.bodies = 800, .contacts = 100});
+    EXPECT_LT(told.live_bytes.load() + 4'000'000, expecting.live_bytes.load());
+    told.largest = 0;
+    run(open, 120);
+    run(exact, 120);
+    EXPECT_GT(told.largest.load(), 64 * 1024);
+    EXPECT_EQ(exact.hash(), open.hash());
 }
 
 TEST(AllocatorHooks, NeedBothFunctions) {
