@@ -62,6 +62,12 @@ public:
         for_each(count, even > least ? even : least, body);
     }
 
+    // In how many parts such a loop is cut.
+    int parts(int count, int least) const {
+        const int most = chunks_per_worker * workers_, wanted = count / (least > 0 ? least : 1);
+        return wanted < 1 ? 1 : wanted < most ? wanted : most;
+    }
+
 private:
     static constexpr int chunks_per_worker = 2;
 

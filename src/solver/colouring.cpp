@@ -2,16 +2,11 @@
 
 #include <bit>
 
-#include "base/prefetch.h"
-
 namespace lendulet {
 namespace {
 
-// By room for points, the largest first; those that resist rolling are classes of their own.
 constexpr int four_points = 0, two_points = 1, size_classes = 3, contact_classes = 2 * size_classes;
-int class_of(const ContactRecord& r) {
-    return size_classes - 1 - row_class(r.point_count) + ((r.flags & contact_rolls) != 0 ? size_classes : 0);
-}
+constexpr int near_places = 16;  // parts of the bodies that contacts of a colour are sorted by
 
 // Lowest colour free at all given bodies, or -1.
 int free_colour(uint32_t used, int colours) {
@@ -19,34 +14,35 @@ int free_colour(uint32_t used, int colours) {
     return c < colours ? c : -1;
 }
 
-// Whether nearly all contacts lie within tiles: a sample is enough, as it is but a question of speed. Others are solved
-// faster in long loops, since the rows of a tile by colour and class often end with empty lanes.
-bool keeps_together(const ContactRecord* records, const uint32_t* list, int count, const Tiles& tiles) {
+}  // namespace
+
+uint8_t contact_kind(const ContactRecord& r) {
+    const int rolls = (r.flags & contact_rolls) != 0 ? size_classes : 0;
+    return static_cast<uint8_t>(size_classes - 1 - row_class(r.point_count) + rolls);
+}
+
+// A sample is enough, as it is but a question of speed.
+bool lie_within(const Tiles& tiles, const ContactEnds* ends, int count) {
     constexpr int every = 8, most_between = 12;  // contacts; % of the sample
     if (tiles.count == 1) return true;
     int between = 0;
-    for (int i = 0; i < count; i += every) {
-        if (i + every * prefetch_distance < count) prefetch(&records[list[i + every * prefetch_distance]]);
-        const ContactRecord& r = records[list[i]];
-        between += tiles.of(r.body_a, r.body_b) == tiles.count;
-    }
+    for (int i = 0; i < count; i += every) between += tiles.of(ends[i].a, ends[i].b) == tiles.count;
     return 100 * between <= most_between * (count / every);
 }
 
-}  // namespace
-
-void ColourSorter::begin(int bodies, int constraints, int classes, Tiles tiles) {
+void ColourSorter::begin(int bodies, int constraints, int classes, Tiles tiles, int order) {
     classes_ = classes;
+    order_ = order;
     tiles_ = tiles;
     used_inside_.assign(tiles.count > 1 ? static_cast<size_t>(bodies) : 0, 0u);
     used_between_.assign(static_cast<size_t>(bodies), 0u);
     used_fixed_.assign(static_cast<size_t>(bodies), 0u);
     keys_.clear();
     keys_.reserve(static_cast<size_t>(constraints));
-    counts_.assign(static_cast<size_t>((tiles.count + 1) * colours * classes) + 1, 0u);
+    counts_.assign(static_cast<size_t>((tiles.count + 1) * colours * classes * order) + 1, 0u);
 }
 
-void ColourSorter::add(int32_t a, bool moved_a, int32_t b, bool moved_b, int constraint_class) {
+void ColourSorter::add(int32_t a, bool moved_a, int32_t b, bool moved_b, int constraint_class, int place) {
     const size_t i = static_cast<size_t>(a), j = static_cast<size_t>(b);
     const int tile = tiles_.of(a, b);
     int colour;
@@ -59,8 +55,8 @@ void ColourSorter::add(int32_t a, bool moved_a, int32_t b, bool moved_b, int con
         colour = free_colour(used, fixed_colours);
         if (colour >= 0) used |= 1u << colour, colour += moving_colours;
     }
-    if (colour < 0) colour = overflow_colour;
-    keys_.push_back(static_cast<uint32_t>((tile * colours + colour) * classes_ + constraint_class));
+    if (colour < 0) colour = overflow_colour, place = 0;
+    keys_.push_back(static_cast<uint32_t>(((tile * colours + colour) * classes_ + constraint_class) * order_ + place));
     ++counts_[keys_.back() + 1u];
 }
 
@@ -68,14 +64,14 @@ void ColourSorter::end() {
     for (size_t k = 1; k < counts_.size(); ++k) counts_[k] += counts_[k - 1];
 }
 
-void ColourSchedule::colour(ColourSorter& sorter, const ContactRecord* records, const uint32_t* list, int count,
-                            const SolverBodies& bodies) const {
-    sorter.begin(bodies.count, count, contact_classes, tiles);
+void ColourSchedule::colour(ColourSorter& sorter, const ContactEnds* ends, int count, const SolverBodies& bodies,
+                            const ContactCut& cut) const {
+    const bool near = cut.near.begin < cut.near.end;
+    const int part = (cut.near.end - cut.near.begin + near_places - 1) / near_places;
+    sorter.begin(bodies.count, count, contact_classes, tiles, near ? near_places : 1);
     for (int i = 0; i < count; ++i) {
-        if (i + prefetch_distance < count) prefetch(&records[list[i + prefetch_distance]]);
-        const ContactRecord& r = records[list[i]];
-        bool moved_a = bodies.state[static_cast<size_t>(r.body_a)].inverse_mass > 0.0f;
-        sorter.add(r.body_a, moved_a, r.body_b, true, class_of(r));
+        const ContactEnds& e = ends[i];
+        sorter.add(e.a, !e.fixed_a, e.b, true, e.kind, near ? (e.b - cut.near.begin) / part : 0);
     }
     sorter.end();
 }
@@ -144,16 +140,16 @@ void ColourSchedule::place_rows(std::byte* rows) {
     }
 }
 
-void ColourSchedule::build(ColourSorter& sorter, const ContactRecord* records, ContactExtra* extras,
-                           const uint32_t* list, int count, const SolverBodies& bodies, Tiles cut,
-                           const SolverKernels& kernels, const SolverKernels& scalar_kernels) {
+void ColourSchedule::build(ColourSorter& sorter, const ContactEnds* ends, ContactExtra* extras, const uint32_t* list,
+                           int count, const SolverBodies& bodies, const ContactCut& cut, const SolverKernels& kernels,
+                           const SolverKernels& scalar_kernels) {
     groups.clear();
     tile_ends.clear();
     colour_ends.clear();
     colours = overflow = 0;
-    tiles = keeps_together(records, list, count, cut) ? cut : Tiles{};
+    tiles = cut.tiles;
     order.resize_unset(static_cast<size_t>(count));
-    if (count > 0) colour(sorter, records, list, count, bodies);
+    if (count > 0) colour(sorter, ends, count, bodies, cut);
     if (count > 0) make_groups(sorter, extras);
     while (tile_ends.count() < tiles.count) tile_ends.push_back(groups.count());
     measure_rows(kernels, scalar_kernels);

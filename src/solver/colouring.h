@@ -34,9 +34,11 @@ public:
     explicit ColourSorter(const Memory* memory)
         : used_inside_(memory), used_between_(memory), used_fixed_(memory), keys_(memory), counts_(memory) {}
 
-    void begin(int bodies, int constraints, int classes, Tiles tiles = {});
-    // The next constraint, between two bodies of which at least one is moved.
-    void add(int32_t a, bool moved_a, int32_t b, bool moved_b, int constraint_class);
+    // `order`: how many places in a group there are to ask for.
+    void begin(int bodies, int constraints, int classes, Tiles tiles = {}, int order = 1);
+    // The next constraint, between two bodies of which at least one is moved. In its group it comes after those with a
+    // smaller `place` and before those with a larger one; one that overflows only after those added before.
+    void add(int32_t a, bool moved_a, int32_t b, bool moved_b, int constraint_class, int place = 0);
     void end();
     // Takes memory for so many; before begin().
     void make_ready(size_t bodies, size_t constraints) {
@@ -50,7 +52,8 @@ public:
     void for_each_group(Group&& group) const {
         const int per_tile = colours * classes_;
         for (int key = 0; key < (tiles_.count + 1) * per_tile; ++key) {
-            uint32_t first = counts_[static_cast<size_t>(key)], n = counts_[static_cast<size_t>(key) + 1] - first;
+            const uint32_t first = counts_[static_cast<size_t>(key * order_)];
+            const uint32_t n = counts_[static_cast<size_t>((key + 1) * order_)] - first;
             if (n > 0) group(key / per_tile, key % per_tile / classes_, key % classes_, first, n);
         }
     }
@@ -65,7 +68,7 @@ private:
     Array<uint32_t> used_inside_, used_between_, used_fixed_;
     Array<uint32_t> keys_;
     Array<uint32_t> counts_;
-    int classes_ = 1;
+    int classes_ = 1, order_ = 1;
     Tiles tiles_;
 };
 
@@ -82,6 +85,20 @@ struct ScheduleRoom {
     }
 };
 
+// ContactEnds::kind of a contact: by room for points, the largest first, and whether it resists rolling.
+uint8_t contact_kind(const ContactRecord& record);
+// Whether nearly all contacts lie within tiles. Others are solved faster in long loops, since the rows of a tile by
+// colour and class often end with empty lanes.
+bool lie_within(const Tiles& tiles, const ContactEnds* ends, int count);
+
+// How the contacts of a class of substeps are divided.
+struct ContactCut {
+    Tiles tiles;
+    // Bodies in one tile by whose places contacts of a colour are sorted, so that a worker's part of every colour has
+    // to do with his part of the bodies; empty where they need not be. Results do not tell.
+    BodyRange near{0, 0};
+};
+
 struct ColourSchedule {
     Array<uint32_t> order;       // indices of records, by group
     Array<ContactGroup> groups;  // those of each tile in the order in which they are solved, then those between tiles
@@ -95,11 +112,10 @@ struct ColourSchedule {
     explicit ColourSchedule(const Memory* memory)
         : order(memory), groups(memory), tile_ends(memory), colour_ends(memory) {}
 
-    // Colours the `count` records that `list` names, all of bodies in these tiles, and takes the tiles for one where
-    // too many lie between them. Where only one body of a record is moved, it is B. `extras`, by record, may be null
-    // where no contact resists rolling.
-    void build(ColourSorter& sorter, const ContactRecord* records, ContactExtra* extras, const uint32_t* list,
-               int count, const SolverBodies& bodies, Tiles cut, const SolverKernels& kernels,
+    // Colours `count` contacts of bodies in these tiles; `list` names their records. Where only one body of a contact
+    // is moved, it is B. `extras`, by record, may be null where no contact resists rolling.
+    void build(ColourSorter& sorter, const ContactEnds* ends, ContactExtra* extras, const uint32_t* list, int count,
+               const SolverBodies& bodies, const ContactCut& cut, const SolverKernels& kernels,
                const SolverKernels& scalar_kernels);
     // Gives the groups their rows, `row_bytes` of memory aligned to Memory::alignment; after build(), once.
     void place_rows(std::byte* rows);
@@ -117,8 +133,8 @@ struct ColourSchedule {
     }
 
 private:
-    void colour(ColourSorter& sorter, const ContactRecord* records, const uint32_t* list, int count,
-                const SolverBodies& bodies) const;
+    void colour(ColourSorter& sorter, const ContactEnds* ends, int count, const SolverBodies& bodies,
+                const ContactCut& cut) const;
     void make_groups(const ColourSorter& sorter, ContactExtra* extras);
     void measure_rows(const SolverKernels& kernels, const SolverKernels& scalar_kernels);
 };

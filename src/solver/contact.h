@@ -39,6 +39,14 @@ static_assert(sizeof(ContactRecord) == 192);
 inline constexpr uint32_t contact_flipped = 1;  // A and B are exchanged against the order of the two colliders
 inline constexpr uint32_t contact_rolls = 2;    // it resists rolling or spinning: see ContactExtra
 
+// What it takes to schedule a contact, so that those who go through all of them, one by one, need not read the records.
+struct ContactEnds {
+    int32_t a, b;  // solver bodies; see ContactRecord
+    uint8_t kind;  // see contact_kind()
+    bool fixed_a;  // A is not moved by constraints
+    bool bounces;  // with a restitution
+};
+
 // What few contacts have, by record, where any material of the world has it.
 struct ContactExtra {
     float rolling, spinning;       // greatest torque per normal force against rolling and about the normal, m

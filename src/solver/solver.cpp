@@ -1,13 +1,12 @@
 #include "solver/solver.h"
 
-#include "base/prefetch.h"
 #include "solver/impacts.h"
 
 namespace lendulet {
 namespace {
 
 constexpr int bodies_per_task = 256;    // bodies in a chunk of a parallel loop; a multiple of 16
-constexpr int contacts_per_task = 256;  // manifolds in a chunk, whatever the width
+constexpr int contacts_per_part = 128;  // the fewest contacts of a colour that are worth a part of a loop
 
 // Calls run(begin, end) on parts of a range of bodies, in whole blocks.
 template <class Run>
@@ -52,13 +51,14 @@ void Solver::for_each_between(TaskPool& tasks, Run&& run) const {
         if (groups->alone || tasks.workers() == 1) {
             run_groups(first, last, run);
         } else {
-            // The groups of a colour end to end, in parts of even size.
-            tasks.share(blocks, contacts_per_task / kernels_.width, [&](int begin, int end, int) {
-                for (const ContactGroup* g = groups; begin < end; ++g) {
-                    const int n = static_cast<int>(block_count(static_cast<uint32_t>(g->count), kernels_.width));
-                    if (begin < n) run(kernels_, *g, begin, end < n ? end : n);
-                    begin = begin > n ? begin - n : 0;
-                    end -= n;
+            // Of every group of the colour the same share: a worker meets the same bodies in all groups and colours.
+            const int parts = tasks.parts(blocks, contacts_per_part / kernels_.width);
+            tasks.for_each(parts, 1, [&](int begin, int end, int) {
+                for (int i = first; i < last; ++i) {
+                    const ContactGroup& g = groups[i - first];
+                    const auto n = static_cast<int>(block_count(static_cast<uint32_t>(g.count), kernels_.width));
+                    const int from = n * begin / parts, to = n * end / parts;
+                    if (from < to) run(kernels_, g, from, to);
                 }
             });
         }
@@ -100,15 +100,13 @@ void Solver::pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepCo
     });
 }
 
-size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const ContactRecord* records,
-                        const uint32_t* list, int count, Tiles tiles, ContactExtra* extras) {
+size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const ContactEnds* ends, const uint32_t* list,
+                        int count, const ContactCut& cut, ContactExtra* extras) {
     extras_ = extras;
-    schedule_.build(sorter, records, extras, list, count, bodies, tiles, kernels_, scalar_);
+    schedule_.build(sorter, ends, extras, list, count, bodies, cut, kernels_, scalar_);
     bouncing_.clear();
-    for (int i = 0; i < count; ++i) {
-        if (i + prefetch_distance < count) prefetch(&records[list[i + prefetch_distance]].restitution);
-        if (records[list[i]].restitution > 0.0f) bouncing_.push_back(list[i]);
-    }
+    for (int i = 0; i < count; ++i)
+        if (ends[i].bounces) bouncing_.push_back(list[i]);
     return schedule_.row_bytes;
 }
 

@@ -43,10 +43,11 @@ public:
           kernels_(solver_kernels(width)),
           scalar_(solver_kernels(1)) {}
 
-    // Colours the manifolds that `list` names. `extras`, by record: see ContactExtra; null where no material has any.
-    // `tiles`: how the bodies are cut that solve() is given. Returns the bytes of rows that prepare() is to be given.
-    size_t schedule(ColourSorter& sorter, const SolverBodies& bodies, const ContactRecord* records,
-                    const uint32_t* list, int count, Tiles tiles = {}, ContactExtra* extras = nullptr);
+    // Colours `count` manifolds by their ends; `list` names their records. `extras`, by record: see ContactExtra; null
+    // where no material has any. `cut`: of the bodies that solve() is given. Returns the bytes of rows that prepare()
+    // is to be given.
+    size_t schedule(ColourSorter& sorter, const SolverBodies& bodies, const ContactEnds* ends, const uint32_t* list,
+                    int count, const ContactCut& cut = {}, ContactExtra* extras = nullptr);
     // Packs them into rows, memory aligned to Memory::alignment that must stay until store(). `records` as before.
     void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, std::byte* rows);
     // So that contacts of `other` may become this one's without asking for memory; before schedule().

@@ -12,6 +12,7 @@
 #include "world/continuous.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "collision/query/cast.h"
@@ -20,18 +21,12 @@
 namespace lendulet {
 namespace {
 
-constexpr int suspects_per_task = 4;
+constexpr int suspects_per_task = 4, bodies_per_task = 256;
+constexpr uint8_t fast_kinematic = 2;  // of ContinuousData::is_suspect, while suspects are sought
 // A body that turns farther within a step, rad, has contacts too rough to trust with its energy: a slender rod at 300
 // rad/s and 240 Hz would gain a fifth of it where it hits a pole.
 constexpr float rough_turn = 0.25f;
 constexpr float full_turn = 2.0f * pi;
-
-// How a body moved in the step, about its centre of mass.
-struct BodyPath {
-    Pose start, end;
-    Vec3 axis{1.0f, 0.0f, 0.0f};
-    float angle = 0.0f;
-};
 
 bool is_still(const WorldData& world, uint32_t body) { return world.bodies.info[body].solver_index < reserved_bodies; }
 
@@ -85,14 +80,19 @@ float most_reach_of(const WorldData& world, uint32_t body, float dt) {
     return most * length(Vec3{dp[0], dp[1], dp[2]}) + most_turn_of(world, body, dt) * info.radius;
 }
 
-// How far any point of `body` moved at most as another one, which went along `path`, saw it: a body that goes along
-// with a great drum hardly moves against its wall, however fast both are.
-float most_reach_against(const WorldData& world, uint32_t body, const BodyPath& path, float dt) {
+Carrier carrier_of(const WorldData& world, uint32_t body, const BodyPath& path) {
+    return {path, rotation_about(path.axis, path.angle), is_still(world, body), body};
+}
+
+// How far any point of `body` moved at most as another one saw it: a body that goes along with a great drum hardly
+// moves against its wall, however fast both are.
+float most_reach_against(const WorldData& world, uint32_t body, const Carrier& carrier, float dt) {
+    const BodyPath& path = carrier.path;
     const Position start = world.continuous.start[place_of(world, body)].position,
                    end = world.bodies.pose[body].position;
     const float turn = absolute(path.angle);
     if (turn > 1.0f) return 3e38f;
-    const Vec3 arm = rotate(rotation_about(path.axis, path.angle), start - path.start.position);
+    const Vec3 arm = rotate(carrier.turn, start - path.start.position);
     const Position carried = path.end.position + arm;
     // The carrier's velocity there changes its direction by `turn`: by half of that from its mean at most.
     const float bend = 0.5f * turn * length(carried - start);
@@ -150,10 +150,10 @@ void meet(const WorldData& world, uint32_t mine, const BodyPath& path, uint32_t 
     impact.offer(touching ? deep.fraction : first.fraction, mine, other);
 }
 
-// Bounds of everything that the body passes.
-void bounds_of(const BodyPath& path, float radius, float lower[3], float upper[3]) {
+// Bounds of everything that a body passes between two places.
+void bounds_of(Position from, Position to, float radius, float lower[3], float upper[3]) {
     Vec3 r{radius, radius, radius};
-    Vec3 a = from_origin(path.start.position), b = from_origin(path.end.position);
+    Vec3 a = from_origin(from), b = from_origin(to);
     Vec3 low = minimum(a, b) - r, high = maximum(a, b) + r;
     for (int k = 0; k < 3; ++k) lower[k] = component(low, k), upper[k] = component(high, k);
 }
@@ -164,7 +164,7 @@ bool is_obstacle(const WorldData& world, uint32_t collider) {
 }
 
 // Lists what nothing can push, if that is worth while.
-void list_obstacles(WorldData& world) {
+void list_obstacles(WorldData& world, float dt) {
     constexpr size_t few = 48;
     ContinuousData& c = world.continuous;
     const int colliders = world.colliders.slots.count();
@@ -172,51 +172,81 @@ void list_obstacles(WorldData& world) {
     c.few_obstacles = c.suspects.count() * 8 > colliders;
     for (int i = 0; c.few_obstacles && i < colliders; ++i) {
         const uint32_t slot = world.colliders.slots.in_order(i);
-        if (is_obstacle(world, slot)) c.obstacles.push_back(slot);
+        if (!is_obstacle(world, slot)) continue;
+        const uint32_t body = world.colliders.info[slot].body;
+        const bool known = !c.obstacles.empty() && c.obstacles.back().carrier.body == body;
+        const Carrier carrier = known ? c.obstacles.back().carrier : carrier_of(world, body, path_of(world, body, dt));
+        c.obstacles.push_back({slot, box_of(world, slot), carrier});
         c.few_obstacles = c.obstacles.size() <= few;
     }
-    std::sort(c.obstacles.begin(), c.obstacles.end());  // order: total
+    std::sort(c.obstacles.begin(), c.obstacles.end(),
+              [](const Obstacle& a, const Obstacle& b) { return a.collider < b.collider; });  // order: total
 }
 
-// Colliders near the body's path that it can meet: obstacles, or those of other bodies; rising.
-void find_near(const WorldData& world, const BodyPath& path, float radius, bool obstacles, Array<uint32_t>& near) {
-    const ContinuousData& c = world.continuous;
-    float lower[3], upper[3];
-    bounds_of(path, radius, lower, upper);
-    near.clear();
-    if (obstacles && c.few_obstacles) {
-        for (uint32_t i : c.obstacles) {
-            const BroadBox& box = box_of(world, i);
+// A body on its way: how it turned is found when something is near enough to ask.
+class Suspect {
+public:
+    Suspect(const WorldData& world, uint32_t body, float dt) : world_(world), body_(body), dt_(dt) {}
+    const BodyPath& path() {
+        if (!known_) path_ = path_of(world_, body_, dt_);
+        known_ = true;
+        return path_;
+    }
+    // The first impact with obstacles, or with other bodies. `near`: room for those that are near.
+    Impact first_impact(bool obstacles, Array<uint32_t>& near) {
+        const ContinuousData& c = world_.continuous;
+        const BodyInfo& info = world_.bodies.info[body_];
+        float lower[3], upper[3];
+        bounds_of(c.start[place_of(world_, body_)].position, world_.bodies.pose[body_].position, info.radius, lower,
+                  upper);
+        if (obstacles && c.few_obstacles) meet_listed(lower, upper);
+        else meet_found(lower, upper, obstacles, near);
+        return impact_;
+    }
+
+private:
+    // Of the obstacles on the list, those whose boxes are near.
+    void meet_listed(const float lower[3], const float upper[3]) {
+        for (const Obstacle& o : world_.continuous.obstacles) {
             bool overlap = true;
-            for (int d = 0; d < 3; ++d) overlap &= box.lower[d] <= upper[d] && lower[d] <= box.upper[d];
-            if (overlap) near.push_back(i);
+            for (int d = 0; d < 3; ++d) overlap &= o.box.lower[d] <= upper[d] && lower[d] <= o.box.upper[d];
+            if (overlap && moved_far(o.carrier)) meet_collider(o.collider, o.carrier.path);
         }
-        return;
     }
-    world.broad_phase.query_box(lower, upper, near);
-    size_t kept = 0;
-    for (uint32_t i : near)
-        if (world.colliders.info[i].boxed && is_obstacle(world, i) == obstacles) near[kept++] = i;
-    near.resize_unset(kept);
-    std::sort(near.begin(), near.end());  // order: total
-}
+    // Those that the broad phase finds: obstacles or others, rising.
+    void meet_found(const float lower[3], const float upper[3], bool obstacles, Array<uint32_t>& near) {
+        near.clear();
+        world_.broad_phase.query_box(lower, upper, near);
+        std::sort(near.begin(), near.end());  // order: total
+        for (uint32_t i : near) {
+            if (!world_.colliders.info[i].boxed || is_obstacle(world_, i) != obstacles) continue;
+            const uint32_t carrier = world_.colliders.info[i].body;
+            const BodyPath other = path_of(world_, carrier, dt_);
+            if (!obstacles || moved_far(carrier_of(world_, carrier, other))) meet_collider(i, other);
+        }
+    }
+    // Whether, as the carrier of an obstacle saw it, the body moved so far that it may have passed through it.
+    bool moved_far(const Carrier& carrier) {
+        if (carrier.still) return true;
+        if (carrier.body != asked_) {
+            asked_ = carrier.body;
+            far_ = most_reach_against(world_, body_, carrier, dt_) > world_.bodies.info[body_].depth;
+        }
+        return far_;
+    }
+    void meet_collider(uint32_t other, const BodyPath& other_path) {
+        for (uint32_t c = world_.bodies.info[body_].first_collider; c != no_slot; c = world_.colliders.info[c].next)
+            if (may_meet(world_, c, other)) meet(world_, c, path(), other, other_path, impact_);
+    }
 
-// The first impact of a body with obstacles, or with other bodies.
-Impact first_impact(const WorldData& world, uint32_t body, const BodyPath& path, float dt, bool obstacles,
-                    Array<uint32_t>& near) {
-    const BodyInfo& info = world.bodies.info[body];
-    find_near(world, path, info.radius, obstacles, near);
-    Impact impact;
-    for (uint32_t other : near) {
-        const uint32_t carrier = world.colliders.info[other].body;
-        const BodyPath other_path = path_of(world, carrier, dt);
-        const bool carries = obstacles && !is_still(world, carrier);
-        if (carries && !(most_reach_against(world, body, other_path, dt) > info.depth)) continue;
-        for (uint32_t c = info.first_collider; c != no_slot; c = world.colliders.info[c].next)
-            if (may_meet(world, c, other)) meet(world, c, path, other, other_path, impact);
-    }
-    return impact;
-}
+    const WorldData& world_;
+    uint32_t body_;
+    float dt_;
+    bool known_ = false, far_ = false;
+    uint32_t asked_ = no_slot;  // the carrier that far_ is of
+    BodyPath path_;
+    Impact impact_;
+};
 
 // A body that is put from one orientation of its path to another keeps its angular momentum. The path is an even turn,
 // the true motion need not be: a slender body may have many times its energy there. It keeps that too where it is
@@ -259,16 +289,20 @@ void stop(WorldData& world, uint32_t body, const BodyPath& path, const Impact& i
 // Bodies in the way of kinematic ones that moved far, and far against them.
 void suspect_swept(WorldData& world, uint32_t kinematic, const BodyPath& path, float dt, Array<uint32_t>& near) {
     float lower[3], upper[3];
-    bounds_of(path, world.bodies.info[kinematic].radius, lower, upper);
+    bounds_of(path.start.position, path.end.position, world.bodies.info[kinematic].radius, lower, upper);
+    const Carrier carrier = carrier_of(world, kinematic, path);
     near.clear();
     world.broad_phase.query_box(lower, upper, near);
-    for (uint32_t c : near) {
-        uint32_t body = world.colliders.info[c].body;
+    auto suspect = [&](uint32_t body) {
         const BodyInfo& info = world.bodies.info[body];
-        if (info.type == BodyType::dynamic && !is_still(world, body) && !info.contained &&
-            most_reach_against(world, body, path, dt) > info.depth)
-            world.continuous.is_suspect[place_of(world, body)] = 1;
-    }
+        if (info.type != BodyType::dynamic || is_still(world, body) || info.contained) return;
+        std::atomic_ref<uint8_t> mark(world.continuous.is_suspect[place_of(world, body)]);
+        if (mark.load(std::memory_order_relaxed) == 0 && most_reach_against(world, body, carrier, dt) > info.depth)
+            mark.store(1, std::memory_order_relaxed);
+    };
+    world.tasks.for_each(near.count(), bodies_per_task, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) suspect(world.colliders.info[near[static_cast<size_t>(i)]].body);
+    });
 }
 
 void find_suspects(WorldData& world, float dt) {
@@ -277,14 +311,25 @@ void find_suspects(WorldData& world, float dt) {
     c.bullets.clear();
     c.is_suspect.assign(c.start.size(), 0);
     c.fraction.assign(c.start.size(), 1.0f);
+    std::atomic<bool> any{false};
+    world.tasks.for_each(world.awake.count(), bodies_per_task, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) {
+            const uint32_t body = world.awake[static_cast<size_t>(i)];
+            BodyInfo& info = world.bodies.info[body];
+            info.stopped = false;
+            if (info.contained || !(most_reach_of(world, body, dt) > info.depth)) continue;
+            const float way = length(world.bodies.pose[body].position - c.start[place_of(world, body)].position);
+            if (!(way > info.depth) && !(reach_of(path_of(world, body, dt), info.radius) > info.depth)) continue;
+            c.is_suspect[place_of(world, body)] = info.type == BodyType::kinematic ? fast_kinematic : 1;
+            any.store(true, std::memory_order_relaxed);
+        }
+    });
+    if (!any.load(std::memory_order_relaxed)) return;
     for (uint32_t body : world.awake) {
-        BodyInfo& info = world.bodies.info[body];
-        info.stopped = false;
-        if (info.contained || !(most_reach_of(world, body, dt) > info.depth)) continue;
-        BodyPath path = path_of(world, body, dt);
-        if (!(reach_of(path, info.radius) > info.depth)) continue;
-        if (info.type == BodyType::kinematic) suspect_swept(world, body, path, dt, c.near[0]);
-        else c.is_suspect[place_of(world, body)] = 1;
+        uint8_t& mark = c.is_suspect[place_of(world, body)];
+        if (mark != fast_kinematic) continue;
+        mark = 0;
+        suspect_swept(world, body, path_of(world, body, dt), dt, c.near[0]);
     }
     for (uint32_t body : world.awake) {
         const BodyInfo& info = world.bodies.info[body];
@@ -350,32 +395,26 @@ void limit_energies(WorldData& world, float dt) {
 
 }  // namespace
 
-void remember_poses(WorldData& world) {
-    if (!world.config.continuous) return;
-    world.continuous.start.resize_unset(static_cast<size_t>(world.solver_bodies.count - reserved_bodies));
-    for (uint32_t body : world.awake) world.continuous.start[place_of(world, body)] = world.bodies.pose[body];
-}
-
 void stop_at_impacts(WorldData& world, float dt) {
     world.statistics.stopped_bodies = 0;
     if (!world.config.continuous) return;
     find_suspects(world, dt);
     ContinuousData& c = world.continuous;
-    list_obstacles(world);
+    list_obstacles(world, dt);
     // Against what nothing can push: each body for itself.
     world.tasks.for_each(c.suspects.count(), suspects_per_task, [&](int begin, int end, int worker) {
         for (int i = begin; i < end; ++i) {
-            uint32_t body = c.suspects[static_cast<size_t>(i)];
-            BodyPath path = path_of(world, body, dt);
-            Impact impact = first_impact(world, body, path, dt, true, c.near[static_cast<size_t>(worker)]);
-            if (impact.fraction <= 1.0) stop(world, body, path, impact, dt);
+            const uint32_t body = c.suspects[static_cast<size_t>(i)];
+            Suspect suspect(world, body, dt);
+            const Impact impact = suspect.first_impact(true, c.near[static_cast<size_t>(worker)]);
+            if (impact.fraction <= 1.0) stop(world, body, suspect.path(), impact, dt);
         }
     });
     // Bullets against other bodies as these now move, one after the other.
     for (uint32_t body : c.bullets) {
-        BodyPath path = path_of(world, body, dt);
-        Impact impact = first_impact(world, body, path, dt, false, c.near[0]);
-        if (impact.fraction <= 1.0) stop(world, body, path, impact, dt);
+        Suspect suspect(world, body, dt);
+        const Impact impact = suspect.first_impact(false, c.near[0]);
+        if (impact.fraction <= 1.0) stop(world, body, suspect.path(), impact, dt);
     }
     limit_energies(world, dt);
     for (uint32_t body : c.suspects) world.statistics.stopped_bodies += world.bodies.info[body].stopped;

@@ -36,8 +36,12 @@ void pack_extras(WorldData& world, float dt) {
         const SolverPart& part = world.parts[c];
         const float h = dt / static_cast<float>(world.config.solver_steps << c);
         const uint32_t* list = world.active.data() + part.first_contact;
+        ContactEnds* ends = world.active_ends.data() + part.first_contact;
         world.tasks.for_each(part.contact_count, 256, [&](int begin, int end, int) {
-            for (int i = begin; i < end; ++i) pack_extra(world, list[i], h);
+            for (int i = begin; i < end; ++i) {
+                pack_extra(world, list[i], h);
+                ends[i].kind = contact_kind(world.records[list[i]]);
+            }
         });
     }
 }

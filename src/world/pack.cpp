@@ -1,4 +1,6 @@
 // Stages 5 and 7: awake bodies and their contacts into the solver's packed arrays, and back.
+#include <atomic>
+
 #include "base/prefetch.h"
 #include "dynamics/free_flight.h"
 #include "math/decay.h"
@@ -8,7 +10,7 @@
 namespace lendulet {
 namespace {
 
-constexpr int bodies_per_task = 256;
+constexpr int bodies_per_task = 256, contacts_per_task = 512;
 
 void put(float* p, Vec3 v) { p[0] = v.x, p[1] = v.y, p[2] = v.z; }
 Vec3 get(const float* p) { return {p[0], p[1], p[2]}; }
@@ -21,9 +23,16 @@ float multiple(const WorldData& world, int32_t solver_body) {
     return static_cast<float>(1 << c);
 }
 
-void pack_body(WorldData& world, size_t i, float dt) {
+// As BodyMotion::free.
+float freedom(const WorldData& world, uint32_t slot) {
+    if (slot >= world.island_loads.size()) return 1.0f;
+    const IslandLoad& l = world.island_loads[slot];
+    if (l.step != world.steps + 1 || !l.touches) return 1.0f;
+    return l.meets_moving ? -1.0f : 0.0f;
+}
+
+void pack_body(WorldData& world, uint32_t slot, float dt) {
     const BodyStore& bodies = world.bodies;
-    uint32_t slot = world.awake[i];
     const BodyInfo& info = bodies.info[slot];
     const BodyMass& mass = bodies.mass[slot];
     const float share = 1.0f / multiple(world, info.solver_index);
@@ -58,6 +67,7 @@ void pack_body(WorldData& world, size_t i, float dt) {
     m.anisotropy = 1.0f;
     m.free = 1.0f;
     if (dynamic) {
+        m.free = freedom(world, slot);
         Decay linear = decay(info.linear_damping, h), angular = decay(info.angular_damping, h);
         put(m.inertia, mass.inertia);
         put(m.inverse_inertia, mass.inverse_inertia);
@@ -134,9 +144,44 @@ void fly(WorldData& world, uint32_t slot, float dt) {
     momenta.L = s.L;
 }
 
-void unpack_body(WorldData& world, size_t i, float dt) {
+// Kinematic bodies that something touches; there are few, if any.
+void tie_kinematic(WorldData& world) {
+    for (const ContactEnds& e : world.active_ends)
+        if (e.fixed_a) world.solver_bodies.motion[static_cast<size_t>(e.a)].free = 0.0f;
+}
+
+// The active contacts by class, stably: most often there is but one.
+void sort_by_class(WorldData& world) {
+    int counts[substep_classes] = {}, first = 0;
+    auto class_of = [&](const ContactEnds& e) {
+        int c = 0;
+        while (e.b >= world.parts[c].bodies.end) ++c;
+        return c;
+    };
+    if (world.hard_bodies == 0) counts[0] = world.active.count();
+    else
+        for (const ContactEnds& e : world.active_ends) ++counts[class_of(e)];
+    for (int c = 0; c < substep_classes; ++c) {
+        world.parts[c].first_contact = first;
+        world.parts[c].contact_count = counts[c];
+        first += counts[c];
+    }
+    if (counts[0] == first) return;
+    world.unsorted.swap(world.active);
+    world.unsorted_ends.swap(world.active_ends);
+    world.active.resize_unset(world.unsorted.size());
+    world.active_ends.resize_unset(world.unsorted.size());
+    for (int& n : counts) n = 0;
+    for (size_t i = 0; i < world.unsorted.size(); ++i) {
+        const int c = class_of(world.unsorted_ends[i]);
+        const auto k = static_cast<size_t>(world.parts[c].first_contact + counts[c]++);
+        world.active[k] = world.unsorted[i];
+        world.active_ends[k] = world.unsorted_ends[i];
+    }
+}
+
+void unpack_body(WorldData& world, uint32_t slot, float dt) {
     BodyStore& bodies = world.bodies;
-    uint32_t slot = world.awake[i];
     const BodyInfo& info = bodies.info[slot];
     const BodyState& s = world.solver_bodies.state[static_cast<size_t>(info.solver_index)];
     const BodyMotion& m = world.solver_bodies.motion[static_cast<size_t>(info.solver_index)];
@@ -165,82 +210,33 @@ void unpack_body(WorldData& world, size_t i, float dt) {
 }  // namespace
 
 void pack_bodies(WorldData& world, float dt) {
-    BodyStore& bodies = world.bodies;
-    // By class; each begins a tile of its own.
-    int counts[substep_classes] = {};
-    for (uint32_t slot : world.movers.bodies) {
-        BodyInfo& info = bodies.info[slot];
-        const BodyMomenta& m = bodies.momenta[slot];
-        bool packed = info.type == BodyType::dynamic
-                          ? !info.asleep
-                          : info.type == BodyType::kinematic && length_squared(m.p) + length_squared(m.L) > 0.0f;
-        info.solver_index = packed ? -1 - substep_class(world, slot) : static_body;
-        if (packed) ++counts[-1 - info.solver_index];
-    }
-    int firsts[substep_classes], place = reserved_bodies, awake = 0;
-    for (int c = 0; c < substep_classes; ++c) {
-        const TilePlaces places(place, counts[c]);
-        world.parts[c].bodies = {place, places.end()};
-        place = places.end();
-        firsts[c] = awake;
-        awake += counts[c];
-    }
-    world.hard_bodies = awake - counts[0];
-    world.solver_bodies.reset(place - reserved_bodies);
-    world.awake.resize_unset(static_cast<size_t>(awake));
-    for (uint32_t slot : world.movers.bodies) {
-        const int32_t index = bodies.info[slot].solver_index;
-        if (index < 0) world.awake[static_cast<size_t>(firsts[-1 - index]++)] = slot;
-    }
-    const uint32_t* next = world.awake.data();
-    for (int c = 0; c < substep_classes; ++c) {
-        TilePlaces places(world.parts[c].bodies.begin, counts[c]);
-        for (int i = 0; i < counts[c]; ++i) bodies.info[*next++].solver_index = places.take();
-        places.for_each_empty([&](int i) { world.solver_bodies.set_at_rest(i); });
-    }
-    world.tasks.for_each(world.awake.count(), bodies_per_task, [&](int begin, int end, int) {
-        for (int i = begin; i < end; ++i) pack_body(world, static_cast<size_t>(i), dt);
+    const Array<uint32_t>& list = world.awake;
+    world.tasks.for_each(list.count(), bodies_per_task, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) pack_body(world, list[static_cast<size_t>(i)], dt);
     });
+    if (world.has_packed_kinematic) tie_kinematic(world);
 }
 
 void pack_contacts(WorldData& world) {
-    // The list by class, stably: most often there is but one.
-    int counts[substep_classes] = {};
-    auto part_of = [&](const ContactRecord& r) {
-        int c = 0;
-        while (r.body_b >= world.parts[c].bodies.end) ++c;
-        return c;
-    };
+    Array<ContactEnds>& ends = world.active_ends;
+    ends.resize_unset(world.active.size());
     auto place_of = [&](uint32_t slot) { return world.bodies.info[slot].solver_index; };
-    auto tie = [&](int32_t body, float free) { world.solver_bodies.motion[static_cast<size_t>(body)].free = free; };
-    for (size_t i = 0; i < world.touched; ++i) {
-        const uint32_t slot = world.loaded[i];
-        tie(place_of(slot), world.island_loads[slot].meets_moving ? -1.0f : 0.0f);
-    }
-    const size_t count = world.active.size();
-    for (size_t i = 0; i < count; ++i) {
-        if (i + prefetch_distance < count) prefetch(&world.records[world.active[i + prefetch_distance]]);
-        const TouchingBodies& bodies = world.active_bodies[i];
-        ContactRecord& r = world.records[world.active[i]];
-        r.body_a = place_of(bodies.a);
-        r.body_b = place_of(bodies.b);
-        if (bodies.fixed_a) tie(r.body_a, 0.0f);
-        ++counts[part_of(r)];
-    }
-    int first = 0;
-    for (int c = 0; c < substep_classes; ++c) {
-        world.parts[c].first_contact = first;
-        world.parts[c].contact_count = counts[c];
-        first += counts[c];
-    }
-    if (counts[0] == first) return;
-    world.unsorted.swap(world.active);
-    world.active.resize_unset(world.unsorted.size());
-    for (int& n : counts) n = 0;
-    for (uint32_t i : world.unsorted) {
-        int c = part_of(world.records[i]);
-        world.active[static_cast<size_t>(world.parts[c].first_contact + counts[c]++)] = i;
-    }
+    world.tasks.for_each(ends.count(), contacts_per_task, [&](int begin, int end, int) {
+        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+            const TouchingBodies& t = world.active_bodies[i];
+            ends[i] = {place_of(t.a), place_of(t.b), t.kind, t.fixed_a, t.bounces};
+        }
+    });
+    sort_by_class(world);
+    cut_contacts(world);
+    world.tasks.for_each(ends.count(), contacts_per_task, [&](int begin, int end, int) {
+        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+            if (i + prefetch_distance < ends.size()) prefetch(&world.records[world.active[i + prefetch_distance]]);
+            ContactRecord& r = world.records[world.active[i]];
+            r.body_a = ends[i].a;
+            r.body_b = ends[i].b;
+        }
+    });
     scale_impulses(world, -1);
 }
 
@@ -248,12 +244,18 @@ void unpack_contacts(WorldData& world) { scale_impulses(world, 1); }
 
 void unpack_bodies(WorldData& world, float dt, bool forces_end) {
     BodyStore& bodies = world.bodies;
-    world.tasks.for_each(world.awake.count(), bodies_per_task, [&](int begin, int end, int) {
+    const Array<uint32_t>& list = world.awake;
+    Array<Pose>& start = world.continuous.start;
+    const bool watched = world.config.continuous;
+    if (watched) start.resize_unset(static_cast<size_t>(world.solver_bodies.count - reserved_bodies));
+    std::atomic<int> capped{0}, contained{0};
+    world.tasks.for_each(list.count(), bodies_per_task, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i) {
-            uint32_t slot = world.awake[static_cast<size_t>(i)];
-            Pose before = bodies.pose[slot];
-            unpack_body(world, static_cast<size_t>(i), dt);
+            const uint32_t slot = list[static_cast<size_t>(i)];
             BodyInfo& info = bodies.info[slot];
+            const Pose before = bodies.pose[slot];
+            if (watched) start[static_cast<size_t>(info.solver_index - reserved_bodies)] = before;
+            unpack_body(world, slot, dt);
             info.capped |= info.type == BodyType::dynamic && cap_speed(bodies, slot);
             const BodyMomenta& m = bodies.momenta[slot];
             const Pose& pose = bodies.pose[slot];
@@ -266,13 +268,12 @@ void unpack_bodies(WorldData& world, float dt, bool forces_end) {
                 bodies.change[slot] = {};
             }
             if (forces_end) bodies.forces[slot] = {}, info.has_forces = false;
+            if (info.capped) capped.fetch_add(1, std::memory_order_relaxed);
+            if (info.contained) contained.fetch_add(1, std::memory_order_relaxed);
         }
     });
-    world.statistics.capped_bodies = world.statistics.contained_bodies = 0;
-    for (uint32_t slot : world.awake) {
-        world.statistics.capped_bodies += bodies.info[slot].capped;
-        world.statistics.contained_bodies += bodies.info[slot].contained;
-    }
+    world.statistics.capped_bodies = capped.load(std::memory_order_relaxed);
+    world.statistics.contained_bodies = contained.load(std::memory_order_relaxed);
 }
 
 }  // namespace lendulet

@@ -39,7 +39,7 @@ void make_contacts_ready(WorldData& world, size_t contacts) {
     world.pairs.make_ready(contacts);
     world.narrow_scratch.make_ready(static_cast<size_t>(world.tasks.workers()));
     make_ready(contacts, world.box_pairs, world.records, world.found_separations, world.touching, world.touching_bodies,
-               world.active, world.active_bodies, world.first_loads, world.resting.place);
+               world.active, world.active_bodies, world.active_ends, world.first_loads, world.resting.place);
 }
 
 void reserve_records(WorldData& world, size_t contacts) {

@@ -38,9 +38,10 @@ void prepare_solvers(WorldData& world, float dt) {
     for (int c = substep_classes - 1; c >= 0; --c) {
         const SolverPart& part = world.parts[c];
         first[c] = bytes;
-        bytes += world.solvers[c].schedule(world.schedule_room.sorter, world.solver_bodies, records,
-                                           world.active.data() + part.first_contact, part.contact_count,
-                                           Tiles(part.bodies), world.has_extras ? world.extras.data() : nullptr);
+        bytes += world.solvers[c].schedule(world.schedule_room.sorter, world.solver_bodies,
+                                           world.active_ends.data() + part.first_contact,
+                                           world.active.data() + part.first_contact, part.contact_count, part.cut,
+                                           world.has_extras ? world.extras.data() : nullptr);
         // Islands go up by any number of classes and come down one by one, also long after all has come to rest.
         if (c > 0 && part.contact_count > 0) world.solvers[c - 1].make_room(world.solvers[c]);
     }
@@ -76,8 +77,9 @@ void step(WorldData& world, float dt, bool last) {
     clock.lap(Stage::islands);
     find_joint_groups(world);
     choose_substeps(world, dt);
-    pack_bodies(world, dt);
+    place_bodies(world);
     pack_contacts(world);
+    pack_bodies(world, dt);
     limit_recovery(world, dt);
     pack_extras(world, dt);
     prepare_solvers(world, dt);
@@ -93,7 +95,6 @@ void step(WorldData& world, float dt, bool last) {
         solver.store_joints(world.tasks);
     }
     unpack_contacts(world);
-    remember_poses(world);
     unpack_bodies(world, dt, last);
     stop_at_impacts(world, dt);
     finish_step(world, dt);

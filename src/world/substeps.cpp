@@ -15,6 +15,7 @@
 namespace lendulet {
 namespace {
 
+constexpr int contacts_per_task = 512;
 constexpr int most_contacts = 1024;       // of an island, times its multiple of substeps
 constexpr float allowed_sinking = 1e-3f;  // of the size of the bodies
 constexpr float buckling_reserve = 1.7f;  // above the load at which a column of boxes was seen to buckle
@@ -77,6 +78,7 @@ bool takes_part(WorldData& world, uint32_t slot) {
     const BodyInfo& info = world.bodies.info[slot];
     if (info.asleep || info.type != BodyType::dynamic) return false;
     begin_entry(world, slot);
+    world.island_loads[slot].touches = true;
     return true;
 }
 
@@ -109,17 +111,16 @@ float impulse_of(const ContactRecord& r) {
 }
 
 // Adds what a contact carries to its island's loads, unless its bodies are fast. `both` are moving ones.
-void count_load(WorldData& world, IslandLoad& island, const ContactRecord& r, const TouchingBodies& bodies, bool both,
+void count_load(WorldData& world, IslandLoad& island, float impulse, const TouchingBodies& bodies, bool both,
                 float weight, bool guessed = false) {
     IslandLoad &a = world.island_loads[bodies.a], &b = world.island_loads[bodies.b];  // that of a static body is unused
-    float lightest = b.inverse_mass, radius = b.radius, impulse = impulse_of(r);
+    float lightest = b.inverse_mass, radius = b.radius;
     if (both) {
         lightest = maximum(lightest, a.inverse_mass);
         radius = minimum(radius, a.radius);
     }
     // The upper body of a contact that carries is held by it.
-    bool a_above = dot(Vec3{r.normal[0], r.normal[1], r.normal[2]}, world.config.gravity) > 0.0f;
-    if (both || !a_above) (a_above ? a : b).held = true;
+    if (both || !bodies.a_above) (bodies.a_above ? a : b).held = true;
     if (!(impulse * lightest > weight) || !b.slow || (both && !a.slow)) return;
     float ratio = (guessed ? first_reserve : 1.0f) * impulse * lightest / weight;
     float size = 1.15f * radius;  // a cube's edge from its diagonal
@@ -205,6 +206,23 @@ void tie_other_joints(WorldData& world) {
     }
 }
 
+// Reads what is asked of the records below, where workers can share it.
+void survey_contacts(WorldData& world) {
+    world.tasks.for_each(world.touching.count(), contacts_per_task, [&](int begin, int end, int) {
+        for (int k = begin; k < end; ++k) {
+            const auto i = static_cast<size_t>(k);
+            if (i + prefetch_distance < world.touching.size())
+                prefetch<3>(&world.records[world.touching[i + prefetch_distance]]);
+            const ContactRecord& r = world.records[world.touching[i]];
+            TouchingBodies& t = world.touching_bodies[i];
+            t.impulse = impulse_of(r);
+            t.a_above = dot(Vec3{r.normal[0], r.normal[1], r.normal[2]}, world.config.gravity) > 0.0f;
+            t.bounces = r.restitution > 0.0f;
+            t.kind = contact_kind(r);
+        }
+    });
+}
+
 }  // namespace
 
 void choose_substeps(WorldData& world, float dt) {
@@ -218,29 +236,28 @@ void choose_substeps(WorldData& world, float dt) {
     world.active_bodies.clear();
     world.first_loads.clear();
     world.loaded.clear();
+    survey_contacts(world);
     const size_t count = world.touching.size();
     for (size_t k = 0; k < count; ++k) {
-        if (k + prefetch_distance < count) prefetch(&world.records[world.touching[k + prefetch_distance]]);
         const TouchingBodies bodies = world.touching_bodies[k];
         const uint32_t i = world.touching[k], a = bodies.a, b = bodies.b;
         if (!takes_part(world, b)) continue;  // B moves wherever one of them does, and islands wake as one
         world.active.push_back(i);
         world.active_bodies.push_back(bodies);
-        const ContactRecord& r = world.records[i];
         const bool both = !bodies.fixed_a && takes_part(world, a);
         if (both) loads[a].meets_moving = loads[b].meets_moving = true;
         IslandLoad& island = loads[both ? join(world, a, b) : root(world.load_parent, b)];
         ++island.contacts;
         island.tied |= !both && world.bodies.info[a].type == BodyType::kinematic && moves(world, a);
-        if (impulse_of(r) > 0.0f) count_load(world, island, r, bodies, both, weight);
+        if (bodies.impulse > 0.0f) count_load(world, island, bodies.impulse, bodies, both, weight);
         else if (!loads[b].moves && !moves(world, a)) offer_first_load(world, i, bodies, both);
     }
-    world.touched = world.loaded.size();
     if (!world.first_loads.empty()) {
         guess_first_loads(world, weight);
         for (const FirstLoad& f : world.first_loads) {
             IslandLoad& island = loads[root(world.load_parent, f.bodies.b)];
-            count_load(world, island, world.records[f.record], f.bodies, f.lower != no_slot, weight, true);
+            const float impulse = impulse_of(world.records[f.record]);
+            count_load(world, island, impulse, f.bodies, f.lower != no_slot, weight, true);
         }
     }
     add_joint_groups(world, dt);

@@ -60,15 +60,21 @@ struct alignas(64) IslandLoad {
     bool held = false;      // rests on a contact that carries already
     bool slept = false;     // has slept since, and goes on from here when it wakes
     bool moves = false, slow = false;
+    bool touches = false;  // is in contact
     uint8_t calm = 0;      // steps for which it has been slow, at most calm_steps; `slow`: for so many
     float carried = 0.0f;  // its mass and that of what new contacts put on it, kg
     float inverse_mass = 0.0f, radius = 0.0f;
 };
 
-// The bodies of a contact's A and B, by slot. Where one of them is not moved by constraints, it is A.
+// The bodies of a contact's A and B, by slot. Where one of them is not moved by constraints, it is A. Beside them what
+// those who go through all contacts one by one want to know of its record: see choose_substeps().
 struct TouchingBodies {
     uint32_t a, b;
+    float impulse;  // along the normal, of the last substep, N s
     bool fixed_a;
+    bool a_above;  // gravity presses A on B
+    bool bounces;
+    uint8_t kind;  // see contact_kind()
 };
 
 // A new contact on which `upper` rests; `lower` is no_slot where that is static. See first_loads.cpp.
@@ -99,6 +105,7 @@ struct BodyPair {
 // Stretches of the packed bodies, the active contacts and the active joints that are solved together.
 struct SolverPart {
     BodyRange bodies;
+    ContactCut cut;
     int first_contact, contact_count;
     int first_joint, joint_count;
 };
@@ -152,7 +159,9 @@ struct WorldData {
     Array<TouchingBodies> touching_bodies;  // ... and their bodies, within a step
     Array<uint32_t> active;  // those of them that are solved, by class of substeps: at least one body awake
     Array<TouchingBodies> active_bodies;  // in the order of `touching`
-    Array<uint32_t> unsorted;
+    Array<ContactEnds> active_ends;       // in the order of `active`
+    Array<uint32_t> unsorted;             // room to sort both by class
+    Array<ContactEnds> unsorted_ends;
     int awake_points = 0;            // of listed pairs: points that touch or overlap
     float awake_penetration = 0.0f;  // ... and the deepest overlap, m
     Array<Overlap> overlaps;         // those of pairs at rest first
@@ -178,10 +187,10 @@ struct WorldData {
     Array<IslandLoad> island_loads;  // by body slot
     Array<uint32_t> load_parent;     // union-find over body slots
     Array<uint32_t> loaded;          // slots of those of this step: bodies in contact and those of joint groups
-    size_t touched = 0;              // how many of them, in front, are in contact
     Array<FirstLoad> first_loads;    // of this step
     SolverPart parts[substep_classes];
-    int hard_bodies = 0;  // of classes above the setting's
+    int hard_bodies = 0;                // of classes above the setting's
+    bool has_packed_kinematic = false;  // some packed bodies are moved by hand
     ScheduleRoom schedule_room;
     size_t expected = 0;          // colliders for whose contacts there is room, see expect_contacts()
     bool contacts_given = false;  // World::reserve() was told how many: none are expected
@@ -224,8 +233,12 @@ void choose_substeps(WorldData& world, float dt);
 void offer_first_load(WorldData& world, uint32_t record, const TouchingBodies& bodies, bool both);
 // Sets the impulses of what was offered; `weight`: what a substep of gravity gives to 1 kg, N s.
 void guess_first_loads(WorldData& world, float weight);
-void pack_bodies(WorldData& world, float dt);
+// Gives every awake body its place in the solver's arrays; after choose_substeps().
+void place_bodies(WorldData& world);
+// How the contacts of each class are divided; these are sorted and know their places.
+void cut_contacts(WorldData& world);
 void pack_contacts(WorldData& world);
+void pack_bodies(WorldData& world, float dt);
 // Bodies that many others push out of deep overlaps are pushed by each with a share; after pack_contacts().
 void limit_recovery(WorldData& world, float dt);
 // What the solver wants of contacts whose materials have more than friction and restitution; after pack_contacts().
@@ -234,7 +247,6 @@ void pack_extras(WorldData& world, float dt);
 JointReuse pack_joints(WorldData& world, float h);
 void unpack_contacts(WorldData& world);
 void unpack_bodies(WorldData& world, float dt, bool forces_end);
-void remember_poses(WorldData& world);
 void stop_at_impacts(WorldData& world, float dt);
 void finish_step(WorldData& world, float dt);
 

@@ -79,7 +79,12 @@ public:
         std::vector<uint32_t> list(contacts.size());
         for (size_t i = 0; i < list.size(); ++i) list[i] = static_cast<uint32_t>(i);
         int count = static_cast<int>(contacts.size());
-        room_.rows.resize_unset(solver_.schedule(room_.sorter, solver_bodies_, contacts.data(), list.data(), count));
+        std::vector<ContactEnds> ends;
+        for (const ContactRecord& c : contacts)
+            ends.push_back({c.body_a, c.body_b, contact_kind(c),
+                            !(solver_bodies_.state[static_cast<size_t>(c.body_a)].inverse_mass > 0.0f),
+                            c.restitution > 0.0f});
+        room_.rows.resize_unset(solver_.schedule(room_.sorter, solver_bodies_, ends.data(), list.data(), count));
         solver_.prepare(tasks_, solver_bodies_, contacts.data(), room_.rows.data());
         solver_.prepare_joints(tasks_, solver_bodies_,
                                {records_.data(), static_cast<int>(records_.size()), axes.data()},

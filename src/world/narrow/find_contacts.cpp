@@ -343,7 +343,7 @@ void list_contacts(WorldData& world) {
         for (uint32_t k = 0; k < p.count; ++k) {
             rest.place[p.first_record + k] = static_cast<uint32_t>(world.touching.size());
             world.touching.push_back(p.first_record + k);
-            world.touching_bodies.push_back({p.body_a, p.body_b, p.fixed_a});
+            world.touching_bodies.push_back({p.body_a, p.body_b, 0.0f, p.fixed_a, false, false, 0});
         }
         if (p.hit) add_overlap(world, p);
     }
@@ -360,6 +360,7 @@ void find_contacts(WorldData& world, float dt) {
     for (Array<uint32_t>* list :
          {&world.touching, &world.active, &world.unsorted, &world.eased, &world.resting.records})
         list->reserve(world.records.capacity());
+    for (Array<ContactEnds>* list : {&world.active_ends, &world.unsorted_ends}) list->reserve(world.records.capacity());
     for (Array<TouchingBodies>* list : {&world.touching_bodies, &world.active_bodies})
         list->reserve(world.records.capacity());
     world.touched_sleepers.reserve(world.records.capacity());
