@@ -179,8 +179,8 @@ void list_obstacles(WorldData& world, float dt) {
         c.obstacles.push_back({slot, box_of(world, slot), carrier});
         c.few_obstacles = c.obstacles.size() <= few;
     }
-    std::sort(c.obstacles.begin(), c.obstacles.end(),
-              [](const Obstacle& a, const Obstacle& b) { return a.collider < b.collider; });  // order: total
+    auto by_collider = [](const Obstacle& a, const Obstacle& b) { return a.collider < b.collider; };
+    std::sort(c.obstacles.begin(), c.obstacles.end(), by_collider);  // order: total
 }
 
 // A body on its way: how it turned is found when something is near enough to ask.
