@@ -92,6 +92,8 @@ inline void clear_lane(BoxBlock& block, int lane) {
     }
 }
 
+inline bool is_empty(const BoxBlock& block, int lane) { return block.lower[0][lane] > block.upper[0][lane]; }
+
 inline void clear_lanes(BoxBlock& block) {
     for (int d = 0; d < 3; ++d) {
         for (int i = 0; i < block_size; i += 4) {

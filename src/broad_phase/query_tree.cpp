@@ -4,35 +4,22 @@
 
 #include <utility>
 
+#include "broad_phase/extent.h"
+
 namespace lendulet {
 namespace {
 
 constexpr int bins = 12;
-// A refitted tree whose nodes have grown to this multiple of their size after building is built anew.
-constexpr float most_growth = 1.5f;
-
-void clear(float lower[3], float upper[3]) {
-    for (int d = 0; d < 3; ++d) lower[d] = infinity, upper[d] = -infinity;
-}
-
-void include(float lower[3], float upper[3], const float low[3], const float high[3]) {
-    for (int d = 0; d < 3; ++d) lower[d] = minimum(lower[d], low[d]), upper[d] = maximum(upper[d], high[d]);
-}
-
-float half_area(const float lower[3], const float upper[3]) {
-    float x = upper[0] - lower[0], y = upper[1] - lower[1], z = upper[2] - lower[2];
-    return x * y + y * z + z * x;
-}
 
 }  // namespace
 
 float QueryTree::Part::area() const { return half_area(lower, upper); }
 
 void QueryTree::measure(Part& part) const {
-    clear(part.lower, part.upper);
+    clear_extent(part.lower, part.upper);
     for (int i = 0; i < part.count; ++i) {
         const Item& item = items_[static_cast<size_t>(part.first + i)];
-        include(part.lower, part.upper, item.lower, item.upper);
+        include_extent(part.lower, part.upper, item.lower, item.upper);
     }
 }
 
@@ -46,7 +33,7 @@ void QueryTree::set(Node& node, int lane, const float lower[3], const float uppe
 int QueryTree::split_place(const Part& part) {
     auto centre = [](const Item& item, int d) { return 0.5f * item.lower[d] + 0.5f * item.upper[d]; };
     float low[3], high[3];
-    clear(low, high);
+    clear_extent(low, high);
     Item* items = items_.data() + part.first;
     for (int i = 0; i < part.count; ++i)
         for (int d = 0; d < 3; ++d) {
@@ -56,7 +43,7 @@ int QueryTree::split_place(const Part& part) {
     struct Bin {
         int count = 0;
         float lower[3], upper[3];
-        Bin() { clear(lower, upper); }
+        Bin() { clear_extent(lower, upper); }
     };
     float best_cost = infinity, best_scale = 0.0f;
     int best_axis = -1, best_bin = 0;
@@ -71,18 +58,18 @@ int QueryTree::split_place(const Part& part) {
         for (int i = 0; i < part.count; ++i) {
             Bin& b = bin[bin_of(items[i], axis, scale)];
             ++b.count;
-            include(b.lower, b.upper, items[i].lower, items[i].upper);
+            include_extent(b.lower, b.upper, items[i].lower, items[i].upper);
         }
         float area_behind[bins];
         Bin sum;
         for (int i = bins - 1; i > 0; --i) {
-            include(sum.lower, sum.upper, bin[i].lower, bin[i].upper);
+            include_extent(sum.lower, sum.upper, bin[i].lower, bin[i].upper);
             sum.count += bin[i].count;
             area_behind[i] = sum.count ? half_area(sum.lower, sum.upper) * static_cast<float>(sum.count) : infinity;
         }
         Bin front;
         for (int i = 0; i + 1 < bins; ++i) {
-            include(front.lower, front.upper, bin[i].lower, bin[i].upper);
+            include_extent(front.lower, front.upper, bin[i].lower, bin[i].upper);
             front.count += bin[i].count;
             if (front.count == 0) continue;
             float cost = half_area(front.lower, front.upper) * static_cast<float>(front.count) + area_behind[i + 1];
@@ -134,39 +121,50 @@ void QueryTree::fill(int32_t node, const Part& part, int depth) {
         if (p.count == 1) {
             const Item& item = items_[static_cast<size_t>(p.first)];
             set(n, k, p.lower, p.upper, ~static_cast<int32_t>(item.index));
-            slots_[static_cast<size_t>(node * block_size + k)] = item.slot;
+            put(static_cast<uint32_t>(node), k, item.index);
             continue;
         }
-        int32_t child = nodes_.count();
-        set(n, k, p.lower, p.upper, child);
-        nodes_.push_back({});
-        slots_.resize(slots_.size() + block_size, no_box);
+        const auto child = static_cast<int32_t>(add_node(static_cast<uint32_t>(node * block_size + k)));
+        set(nodes_[static_cast<size_t>(node)], k, p.lower, p.upper, child);
         fill(child, p, depth + 1);
     }
 }
 
+uint32_t QueryTree::add_node(uint32_t parent) {
+    const auto node = static_cast<uint32_t>(nodes_.size());
+    nodes_.push_back({});
+    parents_.push_back(parent);
+    for (int k = 0; k < block_size; ++k) {
+        clear_lane(nodes_[node].box, k);
+        nodes_[node].child[k] = -1;
+    }
+    return node;
+}
+
 void QueryTree::build(const BroadBox* boxes, int count) {
-    count_ = count;
+    count_ = built_count_ = count;
+    changes_ = 0;
+    worn_ = false;
+    built_size_ = 0.0f;
     nodes_.clear();
-    slots_.clear();
+    parents_.clear();
+    places_.clear();
     unbounded_.clear();
     items_.clear();
     for (int i = 0; i < count; ++i) {
         const BroadBox& b = boxes[i];
+        if (places_.size() <= b.index) places_.resize(b.index + 1u, no_box);
         if (!bounded(b)) {
             unbounded_.push_back(b.index);
+            places_[b.index] = beside;
             continue;
         }
-        items_.push_back({{b.lower[0], b.lower[1], b.lower[2]},
-                          {b.upper[0], b.upper[1], b.upper[2]},
-                          static_cast<uint32_t>(i),
-                          b.index});
+        items_.push_back({{b.lower[0], b.lower[1], b.lower[2]}, {b.upper[0], b.upper[1], b.upper[2]}, b.index});
     }
     if (items_.empty()) return;
     Part all{0, items_.count(), {}, {}};
     measure(all);
-    nodes_.push_back({});
-    slots_.resize(block_size, no_box);
+    add_node(no_parent);
     fill(0, all, 0);
     built_size_ = total_size();
 }
@@ -175,46 +173,53 @@ float QueryTree::total_size() const {
     float sum = 0.0f;
     for (const Node& n : nodes_) {
         float lower[3], upper[3];
-        clear(lower, upper);
-        for (int k = 0; k < block_size; ++k)
-            for (int d = 0; d < 3; ++d) {
-                lower[d] = minimum(lower[d], n.box.lower[d][k]);
-                upper[d] = maximum(upper[d], n.box.upper[d][k]);
-            }
-        sum += (upper[0] - lower[0]) + (upper[1] - lower[1]) + (upper[2] - lower[2]);
+        measure(n, lower, upper);
+        if (lower[0] <= upper[0]) sum += (upper[0] - lower[0]) + (upper[1] - lower[1]) + (upper[2] - lower[2]);
     }
     return sum;
 }
 
+void QueryTree::measure(const Node& node, float lower[3], float upper[3]) {
+    clear_extent(lower, upper);
+    for (int k = 0; k < block_size; ++k)
+        for (int d = 0; d < 3; ++d) {
+            lower[d] = minimum(lower[d], node.box.lower[d][k]);
+            upper[d] = maximum(upper[d], node.box.upper[d][k]);
+        }
+}
+
+bool QueryTree::fit_lane(Node& node, int lane) const {
+    float lower[3], upper[3];
+    measure(nodes_[static_cast<size_t>(node.child[lane])], lower, upper);
+    const BroadBox before = box_in(node.box, lane, 0);
+    set_lane(node.box, lane, lower, upper);
+    bool same = true;
+    for (int d = 0; d < 3; ++d) same &= before.lower[d] == lower[d] && before.upper[d] == upper[d];
+    return !same;
+}
+
 bool QueryTree::refit(const BroadBox* boxes) {
-    int found = 0;
+    for (uint32_t index : unbounded_)
+        if (bounded(boxes[index])) return false;
     for (size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
         Node& n = nodes_[i];
         for (int k = 0; k < block_size; ++k) {
-            uint32_t slot = slots_[i * block_size + static_cast<size_t>(k)];
-            if (slot != no_box) {
-                const BroadBox& b = boxes[slot];
+            if (is_empty(n.box, k)) continue;
+            if (n.child[k] < 0) {
+                const BroadBox& b = boxes[~n.child[k]];
                 if (!bounded(b)) return false;
                 set_lane(n.box, k, b.lower, b.upper);
-                ++found;
-            } else if (n.child[k] >= 0) {
-                const BoxBlock& inner = nodes_[static_cast<size_t>(n.child[k])].box;
-                float lower[3], upper[3];
-                for (int d = 0; d < 3; ++d) {
-                    lower[d] = infinity, upper[d] = -infinity;
-                    for (int j = 0; j < block_size; ++j) {
-                        lower[d] = minimum(lower[d], inner.lower[d][j]);
-                        upper[d] = maximum(upper[d], inner.upper[d][j]);
-                    }
-                }
-                set_lane(n.box, k, lower, upper);
+            } else {
+                fit_lane(n, k);
             }
         }
     }
-    if (found + unbounded_.count() != count_) return false;
-    return !(total_size() > most_growth * built_size_);
+    changes_ += count_;
+    return true;
 }
 
-size_t QueryTree::bytes() const { return nodes_.bytes() + slots_.bytes() + unbounded_.bytes() + items_.bytes(); }
+size_t QueryTree::bytes() const {
+    return nodes_.bytes() + parents_.bytes() + places_.bytes() + unbounded_.bytes() + items_.bytes();
+}
 
 }  // namespace lendulet

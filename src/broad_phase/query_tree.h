@@ -1,5 +1,6 @@
 // A tree of boxes for queries: rays, swept boxes, overlaps and nearest boxes, with a visitor that may shorten the
-// search. Eight boxes to a node, split by the surface area heuristic, refitted where only bounds have changed.
+// search. Eight boxes to a node, split by the surface area heuristic, refitted where bounds have changed; boxes come
+// and go one by one as well.
 //
 // Unlike the broad phase it holds boxes as they are now and not through a whole step, so that an exact test behind it
 // sees the present; and it is built for few long searches instead of many short ones.
@@ -15,13 +16,21 @@ namespace lendulet {
 
 class QueryTree {
 public:
-    explicit QueryTree(const Memory* memory) : nodes_(memory), slots_(memory), unbounded_(memory), items_(memory) {}
+    explicit QueryTree(const Memory* memory)
+        : nodes_(memory), parents_(memory), places_(memory), unbounded_(memory), items_(memory) {}
 
     // Builds the tree of boxes[0, count), whose indices are distinct. O(n log n).
     void build(const BroadBox* boxes, int count);
-    // Takes over new bounds of the same boxes in the same order. False where a box has become infinite or finite, or
-    // the tree has become so much larger that it should be built anew; then it must be.
+    // Takes over new bounds of all its boxes, `boxes` being by index. False where a box has become infinite or finite;
+    // then it must be built anew.
     bool refit(const BroadBox* boxes);
+    // One box: comes, goes, or has new bounds. Cost: a way through the tree.
+    void insert(const BroadBox& box);
+    void remove(uint32_t index);
+    void move(const BroadBox& box);
+    bool holds(uint32_t index) const { return index < places_.size() && places_[index] != no_box; }
+    // Whether changes have made it so much larger, or so many boxes have come, that it should be built anew.
+    bool is_worn();
     int count() const { return count_; }
 
     // All walks call visit(index) for every box that may be met, and some just beside: bounds are tested with a margin
@@ -43,6 +52,7 @@ private:
     static constexpr int heuristic_depth = 20;  // below it parts are halved by number
     static constexpr int max_depth = heuristic_depth + 12;
     static constexpr float margin = 2e-6f;  // relative; some roundings of a float
+    static constexpr uint32_t beside = no_box - 1u, no_parent = ~0u;
 
     // child >= 0: node; < 0: ~index of a box. Empty lanes have inverted boxes.
     struct alignas(64) Node {
@@ -51,7 +61,7 @@ private:
     };
     struct Item {
         float lower[3], upper[3];
-        uint32_t slot, index;  // place in the array given; the caller's index
+        uint32_t index;
     };
     struct Part {
         int first, count;
@@ -77,17 +87,29 @@ private:
     Part split(Part& part, bool by_heuristic);
     int split_place(const Part& part);
     static void set(Node& node, int lane, const float lower[3], const float upper[3], int32_t child);
+    void put(uint32_t node, int lane, uint32_t index) {
+        places_[index] = node * block_size + static_cast<uint32_t>(lane);
+    }
+    uint32_t add_node(uint32_t parent);
+    void place_leaf(const BroadBox& box);
+    // The bounds of all that a node holds; the lane of a child that has it, true where that was not so.
+    static void measure(const Node& node, float lower[3], float upper[3]);
+    bool fit_lane(Node& node, int lane) const;
+    void fit_parents(uint32_t node);
     float total_size() const;
 
     // keys_of(block, limit, keys) writes what orders and prunes the lanes.
     template <class Keys, class Visit>
     void walk(float limit, Keys&& keys_of, Visit&& visit) const;
 
-    int count_ = 0;
+    int count_ = 0, built_count_ = 0;
+    int changes_ = 0;  // since its size was last looked at
+    bool worn_ = false;
     float built_size_ = 0.0f;
     Array<Node> nodes_;          // parents before children
-    Array<uint32_t> slots_;      // of every lane that holds a box, its place in the caller's array
-    Array<uint32_t> unbounded_;  // indices of infinite boxes
+    Array<uint32_t> parents_;    // of each node: its parent's number times block_size, plus its lane there
+    Array<uint32_t> places_;     // by index: node and lane likewise, `beside`, or no_box
+    Array<uint32_t> unbounded_;  // indices of boxes beside the nodes, infinite ones above all
     Array<Item> items_;          // while building
 };
 

@@ -102,14 +102,21 @@ bool bound_mover(WorldData& world, uint32_t slot, float dt) {
     return renew(world.moving_boxes[world.box_place[slot]], tight, leeway, fast);
 }
 
+// Colliders that have come or gone; the others have not moved.
 void bound_fixed(WorldData& world) {
     ColliderStore& colliders = world.colliders;
+    world.fixed_boxes.swap(world.fixed_boxes_before);
     world.fixed_boxes.clear();
     for (uint32_t slot : colliders.slots.order()) {
         uint32_t body = colliders.info[slot].body;
         if (world.bodies.info[body].type != BodyType::fixed) continue;
-        world.at_rest[slot] = 1;
+        const uint32_t before = world.box_place[slot];
         world.box_place[slot] = static_cast<uint32_t>(world.fixed_boxes.size());
+        if (before != no_box) {
+            world.fixed_boxes.push_back(world.fixed_boxes_before[before]);
+            continue;
+        }
+        world.at_rest[slot] = 1;
         colliders.update_place(slot, world.bodies.pose[body].orientation);
         set_frame(world, slot, 0.0f);
         bound_collider(world, slot, {}, half_margin(colliders.info[slot]), world.fixed_boxes.push_back({}));

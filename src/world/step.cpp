@@ -128,7 +128,7 @@ void finish_step(WorldData& world, float dt) {
     world.joints_h = world.last_h;
     world.time += dt;
     ++world.steps;
-    world.query_scene.all_moved();
+    world.query_scene.moved(world.movers.colliders);
 }
 
 Status World::update(float dt) {

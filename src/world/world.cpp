@@ -63,6 +63,7 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       broad_phase(settings.broad_phase, &memory),
       moving_boxes(&memory),
       fixed_boxes(&memory),
+      fixed_boxes_before(&memory),
       box_place(&memory),
       changed_boxes(&memory),
       renewed(&memory),

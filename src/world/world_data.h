@@ -124,7 +124,7 @@ struct WorldData {
     // Bounds of colliders, by whether their bodies are static, with the collider's slot as index. Boxes of bodies that
     // rest stay as they are.
     BroadPhase broad_phase;
-    Array<BroadBox> moving_boxes, fixed_boxes;
+    Array<BroadBox> moving_boxes, fixed_boxes, fixed_boxes_before;
     Array<uint32_t> box_place;      // by collider: its place there; no_box: none yet
     Array<uint32_t> changed_boxes;  // places among the moving boxes that are not as the broad phase knows them
     Array<uint8_t> renewed;         // by place among the colliders of movers

@@ -14,14 +14,14 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 const float nan = std::nanf("");
 
 // A world with two cubes on a floor, one of them joined to it, and a kinematic body.
-struct Scene {
+struct Refusing {
     World world = WorldBuilder{}.build().value();
     BodyId floor = add_floor(world);
     BodyId cube = add_cube(world, 0.0f, 0), gone = add_cube(world, 8.0f, 0), door = add_cube(world, 4.0f, 0);
     BodyId paddle = world.add_rigid_body({.position = {-9.0f, 1.0f, 0.0f}, .kinematic = true}).value();
     JointId joint = world.add_joint(world.joint_at(JointType::hinge, floor, door, {4.0f, 0.0f, 0.0f}).value()).value();
 
-    Scene() {
+    Refusing() {
         world.remove_body(gone).value();
         run(world, 5);
     }
@@ -30,7 +30,7 @@ struct Scene {
 struct Refusal {
     const char* name;
     ErrorCode code;
-    std::function<Status(Scene&)> call;
+    std::function<Status(Refusing&)> call;
 };
 void PrintTo(const Refusal& r, std::ostream* out) { *out << r.name; }
 
@@ -38,11 +38,11 @@ template <class T>
 Status status(Result<T> result) {
     return result ? Status{} : Status(result.error());
 }
-std::function<Status(Scene&)> adding(RigidBodyDef def) {
-    return [def](Scene& s) { return status(s.world.add_rigid_body(def)); };
+std::function<Status(Refusing&)> adding(RigidBodyDef def) {
+    return [def](Refusing& s) { return status(s.world.add_rigid_body(def)); };
 }
-std::function<Status(Scene&)> adding(StaticBodyDef def) {
-    return [def](Scene& s) { return status(s.world.add_static_body(def)); };
+std::function<Status(Refusing&)> adding(StaticBodyDef def) {
+    return [def](Refusing& s) { return status(s.world.add_static_body(def)); };
 }
 RigidBodyDef with_mass(float mass) {
     RigidBodyDef def;
@@ -61,11 +61,11 @@ RigidBodyDef damped(float linear, float angular) {
     def.angular_damping = angular;
     return def;
 }
-std::function<Status(Scene&)> on_cube(std::function<Status(RigidBodyRef)> call) {
-    return [call](Scene& s) { return call(s.world.get(s.cube)); };
+std::function<Status(Refusing&)> on_cube(std::function<Status(RigidBodyRef)> call) {
+    return [call](Refusing& s) { return call(s.world.get(s.cube)); };
 }
-std::function<Status(Scene&)> joining(std::function<void(JointDef&)> spoil) {
-    return [spoil](Scene& s) {
+std::function<Status(Refusing&)> joining(std::function<void(JointDef&)> spoil) {
+    return [spoil](Refusing& s) {
         JointDef def = s.world.joint_at(JointType::hinge, s.floor, s.cube, {0.0f, 0.0f, 0.0f}).value();
         spoil(def);
         return status(s.world.add_joint(def));
@@ -75,7 +75,7 @@ std::function<Status(Scene&)> joining(std::function<void(JointDef&)> spoil) {
 class Refusals : public ::testing::TestWithParam<Refusal> {};
 
 TEST_P(Refusals, NameTheErrorAndChangeNothing) {
-    Scene s;
+    Refusing s;
     uint64_t before = s.world.hash();
     int bodies = s.world.body_count(), joints = s.world.joint_count();
     size_t warnings = s.world.warnings().size();
@@ -92,7 +92,7 @@ TEST_P(Refusals, NameTheErrorAndChangeNothing) {
     EXPECT_EQ(s.world.check(), "");
     EXPECT_EQ(s.world.statistics().contained_bodies, 0);
     // And nothing hidden has changed either.
-    Scene untouched;
+    Refusing untouched;
     run(untouched.world, 100);
     EXPECT_EQ(s.world.hash(), untouched.world.hash());
 }
@@ -157,16 +157,16 @@ const Refusal motion_refusals[] = {
          return b.move_to({1e6f, 0.0f, 0.0f}, {}, 1e-38f);
      })},
     {"gravity_nan", non_finite,
-     [](Scene& s) {
+     [](Refusing& s) {
          return s.world.set_gravity({nan, 0.0f, 0.0f});
      }},
     {"gravity_beyond_all", bad_config,
-     [](Scene& s) {
+     [](Refusing& s) {
          return s.world.set_gravity({0.0f, -1e20f, 0.0f});
      }},
-    {"step_negative", bad_time_step, [](Scene& s) { return s.world.update(-0.01f); }},
-    {"step_nan", bad_time_step, [](Scene& s) { return s.world.update(nan); }},
-    {"step_infinite", bad_time_step, [](Scene& s) { return s.world.update(infinity); }},
+    {"step_negative", bad_time_step, [](Refusing& s) { return s.world.update(-0.01f); }},
+    {"step_nan", bad_time_step, [](Refusing& s) { return s.world.update(nan); }},
+    {"step_infinite", bad_time_step, [](Refusing& s) { return s.world.update(infinity); }},
 };
 
 RigidBodyDef sized(Shape shape) { return {.shape = std::move(shape), .position = {0.0f, 5.0f, 0.0f}}; }
@@ -201,23 +201,23 @@ const Refusal body_refusals[] = {
     {"dynamic_friction_negative", bad_material, adding(RigidBodyDef{.dynamic_friction = -1.0f})},
     {"restitution_negative", bad_material, adding(RigidBodyDef{.restitution = -0.1f})},
     {"restitution_above_one", bad_material, adding(RigidBodyDef{.restitution = 1.1f})},
-    {"stale_body", stale_id, [](Scene& s) { return s.world.remove_body(s.gone); }},
-    {"body_of_another_world", wrong_world, [](Scene& s) { return s.world.remove_body(Scene().cube); }},
-    {"joint_of_another_world", wrong_world, [](Scene& s) { return s.world.set_motor(Scene().joint, {}); }},
+    {"stale_body", stale_id, [](Refusing& s) { return s.world.remove_body(s.gone); }},
+    {"body_of_another_world", wrong_world, [](Refusing& s) { return s.world.remove_body(Refusing().cube); }},
+    {"joint_of_another_world", wrong_world, [](Refusing& s) { return s.world.set_motor(Refusing().joint, {}); }},
     {"joint_to_another_world", wrong_world,
-     [](Scene& s) { return status(s.world.joint_at(JointType::ball, s.cube, Scene().cube, {})); }},
-    {"null_body", stale_id, [](Scene& s) { return s.world.remove_body({}); }},
-    {"null_joint", stale_id, [](Scene& s) { return s.world.remove_joint({}); }},
+     [](Refusing& s) { return status(s.world.joint_at(JointType::ball, s.cube, Refusing().cube, {})); }},
+    {"null_body", stale_id, [](Refusing& s) { return s.world.remove_body({}); }},
+    {"null_joint", stale_id, [](Refusing& s) { return s.world.remove_joint({}); }},
     {"joint_to_stale", stale_id,
-     [](Scene& s) { return status(s.world.joint_at(JointType::ball, s.cube, s.gone, {})); }},
+     [](Refusing& s) { return status(s.world.joint_at(JointType::ball, s.cube, s.gone, {})); }},
     {"joint_to_itself", bad_joint,
-     [](Scene& s) { return status(s.world.joint_at(JointType::ball, s.cube, s.cube, {})); }},
+     [](Refusing& s) { return status(s.world.joint_at(JointType::ball, s.cube, s.cube, {})); }},
     {"joint_of_statics", no_dynamic_body,
-     [](Scene& s) { return status(s.world.joint_at(JointType::ball, s.floor, s.paddle, {})); }},
+     [](Refusing& s) { return status(s.world.joint_at(JointType::ball, s.floor, s.paddle, {})); }},
     {"joint_axis_zero", bad_joint,
-     [](Scene& s) { return status(s.world.joint_at(JointType::hinge, s.floor, s.cube, {}, {})); }},
+     [](Refusing& s) { return status(s.world.joint_at(JointType::hinge, s.floor, s.cube, {}, {})); }},
     {"joint_axis_nan", non_finite,
-     [](Scene& s) {
+     [](Refusing& s) {
          return status(s.world.joint_at(JointType::hinge, s.floor, s.cube, {}, {nan, 0.0f, 0.0f}));
      }},
     {"joint_limit_reversed", bad_joint, joining([](JointDef& d) {
@@ -230,7 +230,7 @@ const Refusal body_refusals[] = {
     {"joint_frame_not_unit", bad_rotation, joining([](JointDef& d) { d.frame_b.rotation.w = 3.0f; })},
     {"motor_negative", bad_joint, joining([](JointDef& d) { d.motor.max_force = -1.0f; })},
     {"set_motor_nan", non_finite,
-     [](Scene& s) {
+     [](Refusing& s) {
          return s.world.set_motor(s.joint, {nan, 1.0f});
      }},
 };

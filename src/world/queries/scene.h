@@ -1,9 +1,9 @@
 // What queries search: every collider where it is now, in two trees, one for what is fixed and one for what moves.
 //
 // The broad phase's boxes reach through a whole step, and end before the bodies that were thrown aside in it. Queries
-// therefore keep trees of their own. They cost nothing until somebody asks: writing calls only note what changed, and
-// the first query after a change brings the trees up to date. Colliders that came or were moved by hand since the last
-// step are kept beside the trees while they are few.
+// therefore keep trees of their own. They cost nothing until somebody asks: writing calls and steps only note what
+// changed, and the first query after a change brings the trees up to date, at a cost that goes with what has moved,
+// come or gone.
 #pragma once
 
 #include <atomic>
@@ -29,7 +29,7 @@ struct QueryTarget {
     uint32_t group = 0;
     uint8_t type = 0;  // BodyType
     bool is_trigger = false;
-    bool loose = false;  // beside the trees: what a tree has of it is out of date
+    bool moved = false, changed = false, moves = false;  // is on the list of those
 };
 
 class QueryScene {
@@ -37,13 +37,17 @@ public:
     explicit QueryScene(const Memory* memory)
         : fixed_tree_(memory),
           moving_tree_(memory),
-          fixed_boxes_(memory),
-          moving_boxes_(memory),
+          boxes_(memory),
+          fresh_(memory),
           targets_(memory),
-          loose_(memory) {}
+          moving_(memory),
+          moved_(memory),
+          changed_(memory) {}
 
-    // For writing calls: all moving bodies may be elsewhere; a collider came, went or was moved.
+    // For writing calls: all moving bodies may be elsewhere; those with these colliders; a collider came, went or was
+    // moved.
     void all_moved();
+    void moved(const Array<uint32_t>& colliders);
     void changed(uint32_t collider);
 
     // Brings everything up to date where needed. Safe to call from several threads at once.
@@ -55,43 +59,40 @@ public:
     template <class Visit>
     void cast(const float origin[3], const float translation[3], const float half[3], float limit,
               Visit&& visit) const {
-        auto from_tree = [&](uint32_t c) { return limit = targets_[c].loose ? limit : visit(c); };
-        for (uint32_t c : loose_) limit = visit(c);
+        auto from_tree = [&](uint32_t c) { return limit = visit(c); };
         moving_tree_.cast(origin, translation, half, limit, from_tree);
         fixed_tree_.cast(origin, translation, half, limit, from_tree);
     }
     template <class Visit>
     void nearest(const float lower[3], const float upper[3], float limit, Visit&& visit) const {
-        auto from_tree = [&](uint32_t c) { return limit = targets_[c].loose ? limit : visit(c); };
-        for (uint32_t c : loose_) limit = visit(c);
+        auto from_tree = [&](uint32_t c) { return limit = visit(c); };
         moving_tree_.nearest(lower, upper, limit, from_tree);
         fixed_tree_.nearest(lower, upper, limit, from_tree);
     }
     template <class Visit>
     void overlapping(const float lower[3], const float upper[3], Visit&& visit) const {
-        auto from_tree = [&](uint32_t c) {
-            if (!targets_[c].loose) visit(c);
-        };
-        for (uint32_t c : loose_) visit(c);
-        moving_tree_.overlapping(lower, upper, from_tree);
-        fixed_tree_.overlapping(lower, upper, from_tree);
+        moving_tree_.overlapping(lower, upper, visit);
+        fixed_tree_.overlapping(lower, upper, visit);
     }
 
 private:
-    static constexpr int most_loose = 64;
-
     void update(const WorldData& world);
     void build(const WorldData& world);
-    bool refit(const WorldData& world);
+    void build_tree(const WorldData& world, QueryTree& tree, bool moves);
+    void move_all(const WorldData& world);
+    void move_some(const WorldData& world);
+    void change_some(const WorldData& world);
     void place(const WorldData& world, uint32_t collider);
     BroadBox box_of(const WorldData& world, uint32_t collider) const;
 
     std::atomic<bool> ready_{false}, busy_{false};
-    bool built_ = false, moved_ = false;
+    bool built_ = false, all_moved_ = false;
     QueryTree fixed_tree_, moving_tree_;
-    Array<BroadBox> fixed_boxes_, moving_boxes_;  // in the order of the trees
-    Array<QueryTarget> targets_;                  // by collider
-    Array<uint32_t> loose_;                       // ascending once up to date
+    Array<BroadBox> boxes_;            // by collider
+    Array<BroadBox> fresh_;            // room to build a tree
+    Array<QueryTarget> targets_;       // by collider
+    Array<uint32_t> moving_;           // colliders of the moving tree, and some that have left it
+    Array<uint32_t> moved_, changed_;  // since the trees were up to date, each once
 };
 
 }  // namespace lendulet
