@@ -117,6 +117,14 @@ LENDULET_FORCE_INLINE QuatT<F> normalized(QuatT<F> q) {
     return {s * q.x, s * q.y, s * q.z, s * q.w};
 }
 
+// The turn, or what is left of it at a radian, where the series ends: what spins faster than its parts can follow turns
+// by too little, and not by numbers without bounds.
+template <class F>
+LENDULET_FORCE_INLINE Vec3T<F> at_most_a_radian(Vec3T<F> turn) {
+    const F size2 = dot(turn, turn), one = splat<F>(1.0f);
+    return select(size2 > one, one / square_root(size2), one) * turn;
+}
+
 inline constexpr int max_turn_parts = 128;
 inline constexpr float most_wish = 0.25f;  // of a part
 inline constexpr float quick = 0.2f;       // from here on 6 iterations
@@ -157,11 +165,15 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
         F half = splat<F>(0.5f) * step;
         Vec3T<F> rate = select(given, w, apply_principal(multiply(q, q0), inverse, L));
         for (float i = 0.0f; mask_bits(splat<F>(i) < iterations); i += 1.0f) {
-            QuatT<F> mid = multiply(turn_quaternion(half * rate), q);
+            Vec3T<F> turn = half * rate;
+            if (some_quick) turn = at_most_a_radian(turn);
+            QuatT<F> mid = multiply(turn_quaternion(turn), q);
             Vec3T<F> next = apply_principal(multiply(mid, q0), inverse, L);
             rate = select(given, w, select(splat<F>(i) < iterations, next, rate));
         }
-        QuatT<F> d = multiply(turn_less_one(step * rate), q);
+        Vec3T<F> turn = step * rate;
+        if (some_quick) turn = at_most_a_radian(turn);
+        QuatT<F> d = multiply(turn_less_one(turn), q);
         if (!some_quick) {  // one part, which is not rounded again: the same bits
             q = {q.x + d.x, q.y + d.y, q.z + d.z, q.w + d.w};
             break;
@@ -264,6 +276,17 @@ LENDULET_FORCE_INLINE Vec3T<F> even_change(Vec3T<F> now, Vec3T<F> before, F free
     return select(free > zero, now, select(free < zero, zero_vector<F>(), select(even, before, zero_vector<F>())));
 }
 
+// Speeds within a step, m/s and rad/s: twice those to which bodies are cut after it. Where contacts cannot follow a
+// body any more, it stays finite.
+inline constexpr float most_speed = 2e4f, most_spin = 6e3f;
+
+// How much of a speed stays; 1 but for those beyond `most`.
+template <class F>
+LENDULET_FORCE_INLINE F kept_share(Vec3T<F> speed, float most) {
+    const F size2 = dot(speed, speed);
+    return select(size2 > splat<F>(most * most), splat<F>(most) / square_root(size2), splat<F>(1.0f));
+}
+
 template <int W>
 void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
     using F = Wide<float, W>;
@@ -282,6 +305,16 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
         Vec3T<F> dv = x.v - y.get(b.v_ref), dw = x.w - y.get(b.w_ref);
         Vec3T<F> more_L = apply_principal(multiply(dq, q0), y.get(b.inertia), dw);
         Vec3T<F> L = y.get(b.L) + more_L;
+        const Vec3T<F> start_v = y.get(b.start_v);
+        const F speed_share = kept_share(start_v + x.v, most_speed), spin_share = kept_share(start_w + x.w, most_spin);
+        if (mask_bits(speed_share * spin_share < splat<F>(1.0f))) {  // and nothing of it is repeated
+            auto calm = x.inverse_mass * (splat<F>(1.0f) - speed_share * spin_share) <= zero;
+            x.v = select(calm, x.v, speed_share * (start_v + x.v) - start_v);
+            x.w = select(calm, x.w, spin_share * (start_w + x.w) - start_w);
+            L = select(calm, L, spin_share * L);
+            dv = select(calm, dv, zero_vector<F>());
+            more_L = select(calm, more_L, zero_vector<F>());
+        }
 
         Vec3T<F> change_v = even_change(x.v - y.get(b.v_start), y.get(b.change_v), free, dv);
         Vec3T<F> change_L = even_change(L - y.get(b.L_start), y.get(b.change_L), free, dv);
@@ -293,7 +326,7 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
         }
         y.put(b.dv, dv);
         y.put(b.dL, more_L);
-        Vec3T<F> moved = splat<F>(k.h) * (y.get(b.start_v) + (x.v - half * change_v));
+        Vec3T<F> moved = splat<F>(k.h) * (start_v + (x.v - half * change_v));
         dp = dp + moved;
         dq = turn_at_constant_L<W>(dq, q0, L - half * change_L, inverse, start_w + x.w, anisotropy, k.h);
 

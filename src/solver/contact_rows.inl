@@ -160,12 +160,14 @@ LENDULET_FORCE_INLINE F inverse_or_zero(F k) {
 
 // --- from records to rows
 
+// Of points with arms `ra` and `rb` of their centre.
 template <int W, int P>
-LENDULET_FORCE_INLINE void prepare_normals(ContactRow<W, P>& c, const SymMat3T<Wide<float, W>>& IA,
-                                           const SymMat3T<Wide<float, W>>& IB, Wide<float, W> inverse_masses) {
+LENDULET_FORCE_INLINE void prepare_normals(ContactRow<W, P>& c, Vec3T<Wide<float, W>> ra, Vec3T<Wide<float, W>> rb,
+                                           const SymMat3T<Wide<float, W>>& IA, const SymMat3T<Wide<float, W>>& IB,
+                                           Wide<float, W> inverse_masses) {
     using F = Wide<float, W>;
     Vec3T<F> t2 = cross(c.n, c.t1), minus_t2 = -t2;
-    Vec3T<F> aA = cross(c.ra, c.n), aB = cross(c.rb, c.n);
+    Vec3T<F> aA = cross(ra, c.n), aB = cross(rb, c.n);
     Vec3T<F> IaA = IA * aA, IbB = IB * aB, arms = IaA + IbB;
     SymMat3T<F> I = IA + IB;
     Vec3T<F> I1 = I * minus_t2, I2 = I * c.t1;
@@ -185,11 +187,12 @@ LENDULET_FORCE_INLINE void prepare_normals(ContactRow<W, P>& c, const SymMat3T<W
 }
 
 template <int W, int P>
-LENDULET_FORCE_INLINE void prepare_friction(ContactRow<W, P>& c, const SymMat3T<Wide<float, W>>& IA,
-                                            const SymMat3T<Wide<float, W>>& IB, Wide<float, W> inverse_masses) {
+LENDULET_FORCE_INLINE void prepare_friction(ContactRow<W, P>& c, Vec3T<Wide<float, W>> ra, Vec3T<Wide<float, W>> rb,
+                                            const SymMat3T<Wide<float, W>>& IA, const SymMat3T<Wide<float, W>>& IB,
+                                            Wide<float, W> inverse_masses) {
     using F = Wide<float, W>;
     Vec3T<F> t2 = cross(c.n, c.t1);
-    Vec3T<F> a1 = cross(c.ra, c.t1), b1 = cross(c.rb, c.t1), a2 = cross(c.ra, t2), b2 = cross(c.rb, t2);
+    Vec3T<F> a1 = cross(ra, c.t1), b1 = cross(rb, c.t1), a2 = cross(ra, t2), b2 = cross(rb, t2);
     Vec3T<F> Ia1 = IA * a1, Ib1 = IB * b1;
     F k11 = inverse_masses + dot(a1, Ia1) + dot(b1, Ib1), k12 = dot(a2, Ia1) + dot(b2, Ib1);
     F k22 = inverse_masses + dot(a2, IA * a2) + dot(b2, IB * b2);
@@ -298,8 +301,8 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     SymMat3T<F> IA = load_inverse_inertia_at<W>(bodies.inertia.data(), c.a);
     SymMat3T<F> IB = load_inverse_inertia_at<W>(bodies.inertia.data(), c.b);
     F inverse_masses = A.inverse_mass + B.inverse_mass;
-    prepare_normals<W, P>(c, IA, IB, inverse_masses);
-    prepare_friction<W, P>(c, IA, IB, inverse_masses);
+    prepare_normals<W, P>(c, c.ra, c.rb, IA, IB, inverse_masses);
+    prepare_friction<W, P>(c, c.ra, c.rb, IA, IB, inverse_masses);
     Vec3T<F> f{friction[0], friction[1], friction[2]};
     c.friction.tangent[0] = dot(f, c.t1);
     c.friction.tangent[1] = dot(f, t2);
@@ -370,6 +373,7 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
 template <class F>
 struct MovedArms {
     Vec3T<F> ra, rb, start_slip;
+    F turned;  // square of the sine of half the angle by which one of the bodies has turned, at least
 };
 
 // Separations, levers and arms from the two bodies' displacements since the start of the step.
@@ -388,12 +392,34 @@ LENDULET_FORCE_INLINE MovedArms<Wide<float, W>> update_displacement(ContactRow<W
         c.turn.shift[0] = dot(e, c.t1);
         c.turn.shift[1] = dot(e, t2);
     }
-    MovedArms<F> now{c.ra + c.follow * moved, c.rb - (splat<F>(1.0f) - c.follow) * moved,
-                     c.start_slip - cross(c.start_turn, moved)};
+    MovedArms<F> now{
+        c.ra + c.follow * moved, c.rb - (splat<F>(1.0f) - c.follow) * moved, c.start_slip - cross(c.start_turn, moved),
+        maximum(dqa.x * dqa.x + dqa.y * dqa.y + dqa.z * dqa.z, dqb.x * dqb.x + dqb.y * dqb.y + dqb.z * dqb.z)};
     c.lever_a = cross(now.ra, c.n);
     c.lever_b = cross(now.rb, c.n);
     c.start_approach = dot(c.n, now.start_slip);
     return now;
+}
+
+// From here on, see MovedArms::turned, a row gets new masses in every substep: 0.2 rad.
+inline constexpr float far_turn = 0.01f;
+
+// A slender body that has turned answers many times as much to an impulse, and rows that take it for what it was at the
+// start of the step would answer ever more to what they did themselves: from twice on they gain energy without end. In
+// the lanes that `far` holds for; few rows ever come here.
+template <int W, int P, class Mask>
+[[gnu::noinline]] void renew_masses(ContactRow<W, P>& c, const MovedArms<Wide<float, W>>& now,
+                                    const SymMat3T<Wide<float, W>>& IA, const SymMat3T<Wide<float, W>>& IB,
+                                    Wide<float, W> inverse_masses, Mask far) {
+    ContactRow<W, P> renewed = c;
+    prepare_normals<W, P>(renewed, now.ra, now.rb, IA, IB, inverse_masses);
+    prepare_friction<W, P>(renewed, now.ra, now.rb, IA, IB, inverse_masses);
+    for (int j = 0; j < P; ++j) c.p[j].mass = select(far, renewed.p[j].mass, c.p[j].mass);
+    if constexpr (P > 1)
+        for (int i = 0; i < P * (P - 1) / 2; ++i)
+            c.turn.coupling[i] = select(far, renewed.turn.coupling[i], c.turn.coupling[i]);
+    constexpr int masses = sizeof(c.friction.mass) / sizeof(c.friction.mass[0]);
+    for (int i = 0; i < masses; ++i) c.friction.mass[i] = select(far, renewed.friction.mass[i], c.friction.mass[i]);
 }
 
 // One sweep over the points; returns what it added to the impulses: `biased` with the terms that undo overlap.
@@ -495,7 +521,7 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
     Vec3T<F> t2 = cross(c.n, c.t1), linear, angular;
     F change[P];
     if constexpr (pass == Pass::warm_start) {
-        MovedArms<F> now{c.ra, c.rb, c.start_slip};
+        MovedArms<F> now{c.ra, c.rb, c.start_slip, splat<F>(0.0f)};
         if (k.moved) now = update_displacement<W, P>(c, states, t2);
         for (int j = 0; j < P; ++j) change[j] = c.p[j].impulse;
         apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);
@@ -515,6 +541,8 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
             c.overdue = select(moving, moment, zero_vector<F>());
         }
         MovedArms<F> now = update_displacement<W, P>(c, states, t2);
+        auto far = now.turned > splat<F>(far_turn);
+        if (mask_bits(far)) renew_masses<W, P>(c, now, IA, IB, A.inverse_mass + B.inverse_mass, far);
         sweep_normals<W, P, false>(c, A, B, t2, k, change);
         apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);
         Vec3T<F> slip = (now.start_slip + (B.v - A.v)) + (cross(B.w, now.rb) - cross(A.w, now.ra)), spin{};

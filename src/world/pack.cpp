@@ -4,6 +4,7 @@
 #include "base/prefetch.h"
 #include "dynamics/free_flight.h"
 #include "math/decay.h"
+#include "world/narrow/manifold_records.h"
 #include "world/validate.h"
 #include "world/world_data.h"
 
@@ -242,6 +243,21 @@ void pack_contacts(WorldData& world) {
 
 void unpack_contacts(WorldData& world) { scale_impulses(world, 1); }
 
+namespace {
+
+// What held a body whose state had to be put back is no number to begin the next step with.
+void forget_impulses(WorldData& world) {
+    for (uint32_t i : world.active) {
+        ContactRecord& r = world.records[i];
+        float sum = r.twist_impulse;
+        for (float x : r.normal_impulse) sum += x;
+        for (float x : r.friction_impulse) sum += x;
+        if (!is_finite(sum)) clear_impulses(r);
+    }
+}
+
+}  // namespace
+
 void unpack_bodies(WorldData& world, float dt, bool forces_end) {
     BodyStore& bodies = world.bodies;
     const Array<uint32_t>& list = world.awake;
@@ -274,6 +290,7 @@ void unpack_bodies(WorldData& world, float dt, bool forces_end) {
     });
     world.statistics.capped_bodies = capped.load(std::memory_order_relaxed);
     world.statistics.contained_bodies = contained.load(std::memory_order_relaxed);
+    if (world.statistics.contained_bodies > 0) forget_impulses(world);
 }
 
 }  // namespace lendulet

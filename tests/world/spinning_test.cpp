@@ -1,0 +1,89 @@
+// Slender bodies that spin fast and touch something: in one step they turn so far that they answer many times as much
+// to an impulse as at its start. They must neither gain energy nor become numbers that are none.
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "lendulet/lendulet.h"
+#include "scale.h"
+
+namespace lendulet {
+namespace {
+
+struct Numbers {
+    uint32_t state;
+    float in(float low, float high) {
+        state = state * 1664525u + 1013904223u;
+        return low + (high - low) * static_cast<float>(state >> 8) / 16777216.0f;
+    }
+    Vec3 vector(float most) {
+        const float x = in(-most, most), y = in(-most, most), z = in(-most, most);
+        return {x, y, z};
+    }
+};
+
+Shape slender(int kind, float size) {
+    if (kind == 0) return Capsule{size, 0.3f * size};
+    if (kind == 1) return Box{{size, 0.3f * size, 0.3f * size}};
+    if (kind == 2) return Cylinder{size, 0.3f * size};
+    return TaperedCapsule{size, 0.2f * size, 0.6f * size};
+}
+
+// `count` bodies thrown onto a plane, each spinning at up to `spin`.
+World thrown(Numbers& numbers, int kind, int count, float spin) {
+    World world = WorldBuilder().sleep(false).build().value();
+    world.add_static_body({.shape = Plane{}}).value();
+    for (int i = 0; i < count; ++i) {
+        const float size = 0.06f + 2.0f * numbers.in(0.0f, 1.0f) * numbers.in(0.0f, 1.0f);
+        const float x = numbers.in(-0.5f, 0.5f), y = size * numbers.in(0.5f, 3.0f), z = numbers.in(-0.5f, 0.5f);
+        const Vec3 axis = numbers.vector(1.0f);
+        world
+            .add_rigid_body({.shape = slender(kind, size),
+                             .position = {x, y, z},
+                             .orientation = normalize(Quat{axis.x, axis.y, axis.z, 0.5f}),
+                             .velocity = numbers.vector(20.0f),
+                             .angular_velocity = numbers.vector(spin / 1.7f)})
+            .value();
+    }
+    return world;
+}
+
+double energy(const World& world) { return world.kinetic_energy() + world.potential_energy(); }
+
+class Spinning : public testing::TestWithParam<std::tuple<int, float>> {};
+
+TEST_P(Spinning, LandsWithoutGainingEnergy) {
+    const auto [kind, dt] = GetParam();
+    for (float spin : {100.0f, 300.0f, 1000.0f, 2900.0f})
+        for (int i = 0; i < scaled(300, 10); ++i) {
+            Numbers numbers{static_cast<uint32_t>(7919 * i + 1)};
+            World world = thrown(numbers, kind, 1, spin);
+            const double before = energy(world);
+            for (int k = 0; k < 10; ++k) {
+                ASSERT_TRUE(world.update(dt).ok());
+                ASSERT_EQ(world.statistics().contained_bodies, 0) << "case " << i << ", " << spin << " rad/s";
+                ASSERT_LT(energy(world), 1.05 * before) << "case " << i << ", " << spin << " rad/s";
+            }
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, Spinning,
+                         testing::Combine(testing::Values(0, 1, 2, 3),
+                                          testing::Values(1.0f / 60.0f, 1.0f / 30.0f, 0.1f)));
+
+// Of several that meet in long steps energy is not asked, but numbers are.
+TEST(SpinningHeap, StaysFinite) {
+    for (float dt : {1.0f / 60.0f, 1.0f / 30.0f, 0.15f})
+        for (float spin : {100.0f, 1000.0f, 2900.0f})
+            for (int i = 0; i < scaled(100, 5); ++i) {
+                Numbers numbers{static_cast<uint32_t>(7919 * i + 1)};
+                World world = thrown(numbers, i % 4, 4, spin);
+                for (int k = 0; k < 10; ++k) {
+                    ASSERT_TRUE(world.update(dt).ok());
+                    ASSERT_EQ(world.statistics().contained_bodies, 0) << "case " << i << ", " << spin << " rad/s";
+                }
+            }
+}
+
+}  // namespace
+}  // namespace lendulet
