@@ -55,7 +55,7 @@ class Spinning : public testing::TestWithParam<std::tuple<int, float>> {};
 TEST_P(Spinning, LandsWithoutGainingEnergy) {
     const auto [kind, dt] = GetParam();
     for (float spin : {100.0f, 300.0f, 1000.0f, 2900.0f})
-        for (int i = 0; i < scaled(300, 10); ++i) {
+        for (int i = 0; i < scaled(100, 10); ++i) {
             Numbers numbers{static_cast<uint32_t>(7919 * i + 1)};
             World world = thrown(numbers, kind, 1, spin);
             const double before = energy(world);
@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Spinning,
 TEST(SpinningHeap, StaysFinite) {
     for (float dt : {1.0f / 60.0f, 1.0f / 30.0f, 0.15f})
         for (float spin : {100.0f, 1000.0f, 2900.0f})
-            for (int i = 0; i < scaled(100, 5); ++i) {
+            for (int i = 0; i < scaled(40, 5); ++i) {
                 Numbers numbers{static_cast<uint32_t>(7919 * i + 1)};
                 World world = thrown(numbers, i % 4, 4, spin);
                 for (int k = 0; k < 10; ++k) {
