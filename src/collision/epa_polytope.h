@@ -29,6 +29,7 @@ public:
     // From the origin to the plane of face f with normal n, positive where the origin lies inside.
     double distance(int f, Vec3d n) const { return dot(n, y_[faces_[f].vertex[0]]); }
     Simplex triangle(int f) const;
+    const uint8_t* corners(int f) const { return faces_[f].vertex; }  // three vertices by number
 
 private:
     static constexpr double far = 1e300;
