@@ -180,8 +180,8 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
     SmoothMinimum smooth{{}, false, difference.curved ? 0.1 * size : -1.0};
     for (int expansions = 0;; ++expansions) {
         int f = polytope.nearest_face();
+        DifferencePoint p = difference.support(polytope.direction(f));  // does not wait for the normal's square root
         const Vec3d n = polytope.normal(f);
-        DifferencePoint p = difference.support(n);
         observer.polytope(polytope, f, p);
         double lower = polytope.distance(f, n), upper = dot(n, p.y), gap = upper - lower;
         smooth.look(difference, n, lower, gap);

@@ -37,17 +37,30 @@ Penetration nearest_from_outside(const CoreDifference& difference, Vec3d from, i
 // Seen from outside, a little beyond the surface along the normal, the nearest point of the difference has a normal
 // that needs no more depth. With o = (h(n) + clearance) n and n' the normal there, h(n') <= |o| - clearance = h(n).
 // Along valleys these steps are short, so each round starts twice as far on as the last one came, while that pays.
+// About the middle of a ball they are too short to be told from rounding: before the search ends it leaps ahead once.
 Penetration descend(const CoreDifference& difference, Vec3d n, int expansions) {
     constexpr int max_rounds = 64;
+    constexpr double leap = 0.1, least_step = 1e-7;  // rad
     Penetration best{depth_along(difference, n), n, {}, {}, unknown, expansions};
     Vec3d ahead{};
+    bool has_leapt = false;
     for (int round = 0; round < max_rounds; ++round) {
-        Vec3d from = best.outward + ahead;
-        Penetration next = nearest_from_outside(difference, (1.0 / length(from)) * from, expansions);
-        bool lower = next.depth < best.depth - settled * difference.size, plain = length_squared(ahead) == 0.0;
-        ahead = lower ? 2.0 * (next.outward - best.outward) : Vec3d{};
+        const Vec3d from = best.outward + ahead;
+        const Penetration next = nearest_from_outside(difference, (1.0 / length(from)) * from, expansions);
+        const bool lower = next.depth < best.depth - settled * difference.size, plain = length_squared(ahead) == 0.0;
+        const Vec3d step = next.outward - best.outward;
         if (is_better(next, best, difference.size)) best = next;
-        if (!lower && plain) break;
+        if (lower) {
+            ahead = 2.0 * step;
+            has_leapt = false;
+        } else if (!plain) {
+            ahead = {};
+        } else {
+            const double far = length(step);
+            if (has_leapt || !(far > least_step)) break;
+            has_leapt = true;
+            ahead = (leap / far) * step;
+        }
     }
     return best;
 }
