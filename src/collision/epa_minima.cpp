@@ -8,14 +8,14 @@ namespace lendulet {
 namespace {
 
 constexpr double unknown = 1e300;
-// Of S. Depths nearer to each other are the same: of those the better witness counts.
+// Of S. Depths nearer to each other are the same.
 constexpr double settled = 1e-8;
 
 double depth_along(const CoreDifference& difference, Vec3d n) { return dot(n, difference.support(n).y); }
 
-bool is_better(const Penetration& a, const Penetration& b, double size) {
-    return a.depth < b.depth - settled * size || (a.depth <= b.depth + settled * size && a.gap < b.gap);
-}
+// By depth and by how far the nearest point misses it: a round that came from afar may end at the right normal with a
+// point elsewhere on the face.
+bool is_better(const Penetration& a, const Penetration& b) { return a.depth + a.gap < b.depth + b.gap; }
 
 // The nearest point of the difference to a point o a little beyond its surface along `from`, with the normal there.
 Penetration nearest_from_outside(const CoreDifference& difference, Vec3d from, int expansions) {
@@ -41,15 +41,16 @@ Penetration nearest_from_outside(const CoreDifference& difference, Vec3d from, i
 Penetration descend(const CoreDifference& difference, Vec3d n, int expansions) {
     constexpr int max_rounds = 64;
     constexpr double leap = 0.1, least_step = 1e-7;  // rad
-    Penetration best{depth_along(difference, n), n, {}, {}, unknown, expansions};
+    Penetration lowest{depth_along(difference, n), n, {}, {}, unknown, expansions}, best = lowest;
     Vec3d ahead{};
     bool has_leapt = false;
     for (int round = 0; round < max_rounds; ++round) {
-        const Vec3d from = best.outward + ahead;
+        const Vec3d from = lowest.outward + ahead;
         const Penetration next = nearest_from_outside(difference, (1.0 / length(from)) * from, expansions);
-        const bool lower = next.depth < best.depth - settled * difference.size, plain = length_squared(ahead) == 0.0;
-        const Vec3d step = next.outward - best.outward;
-        if (is_better(next, best, difference.size)) best = next;
+        const bool lower = next.depth < lowest.depth - settled * difference.size, plain = length_squared(ahead) == 0.0;
+        const Vec3d step = next.outward - lowest.outward;
+        if (next.depth < lowest.depth) lowest = next;
+        if (is_better(next, best)) best = next;
         if (lower) {
             ahead = 2.0 * step;
             has_leapt = false;
@@ -107,7 +108,7 @@ Penetration search_minima(const CoreDifference& difference, const Polytope& poly
         if (f < 0) break;
         tried[f] = true;
         Penetration found = descend(difference, polytope.normal(f), expansions);
-        if (is_better(found, best, size)) best = found;
+        if (is_better(found, best)) best = found;
         known = minimum(known, best.depth);
     }
     return best;
