@@ -2,9 +2,9 @@
 // whose surface no polytope reaches. In: a simplex of GJK that holds the origin. Out: depth, normal, witness points.
 #include "collision/epa.h"
 
+#include "collision/epa_minima.h"
 #include "collision/epa_polytope.h"
 #include "collision/gjk_newton.h"
-#include "collision/gjk_search.h"
 #include "collision/simplex.h"
 #include "collision/trace.h"
 
@@ -136,62 +136,6 @@ struct SmoothMinimum {
     }
 };
 
-// Where minima lie too near to each other for a polytope of this size to tell, one is made exact by descent: seen from
-// outside, a little beyond the surface along the normal, the nearest point of the difference has a normal that needs no
-// more depth. With o = (h(n) + clearance) n and n' the normal there, h(n') <= |o| - clearance = h(n). Nearly round
-// differences make these steps short, so each round starts as much farther on as the last one came, while that pays.
-Penetration descend(const CoreDifference& difference, Vec3d n, int expansions) {
-    constexpr int max_rounds = 64;
-    constexpr uint8_t all_points[4] = {0, 1, 2, 3};
-    const double clearance = 0.01 * difference.size, settled = 1e-8 * difference.size;
-    Penetration best{dot(n, difference.support(n).y), n, {}, {}, 1e300, expansions};
-    Vec3d ahead{};
-    for (int round = 0; round < max_rounds; ++round) {
-        Vec3d from = best.outward + ahead;
-        from = (1.0 / length(from)) * from;
-        DifferencePoint p = difference.support(from);
-        Vec3d o = (dot(from, p.y) + clearance) * from;
-        CoreDifference seen = difference;
-        seen.translation -= o;
-        Simplex s;
-        s.add({p.y - o, p.a, p.b});
-        Search found = search(seen, s, SimplexSolver::barycentric, 1e300);
-        Vec3d next = -found.direction, y = o + found.v;
-        double depth = dot(next, difference.support(next).y), gap = absolute(length(y) - depth);
-        bool better = depth < best.depth - settled, plain = length_squared(ahead) == 0.0;
-        ahead = better ? next - best.outward : Vec3d{};
-        if (better || (depth <= best.depth + settled && gap < best.gap))
-            best = {depth, next, y, difference.witness_on_a(s, all_points, s.weight, s.count), gap, expansions};
-        if (!better && plain) break;
-    }
-    return best;
-}
-
-// Descends from the nearest face, then from others that may still hide a lesser depth, as long as they look elsewhere.
-Penetration descend_from_faces(const CoreDifference& difference, const Polytope& polytope, int expansions) {
-    constexpr int max_starts = 8;
-    constexpr double elsewhere = 0.95;  // cosine
-    Vec3d seen[2 * max_starts];
-    Penetration best{};
-    for (int starts = 0; starts < max_starts; ++starts) {
-        double least = starts == 0 ? 1e300 : best.depth - certified_distance * difference.size;
-        int f = -1;
-        for (int g = 0; g < polytope.face_end(); ++g) {
-            if (!polytope.alive(g)) continue;
-            Vec3d n = polytope.normal(g);
-            bool fresh = polytope.distance(g, n) < least;
-            for (int i = 0; fresh && i < 2 * starts; ++i) fresh = dot(n, seen[i]) < elsewhere;
-            if (fresh) least = polytope.distance(g, n), f = g;
-        }
-        if (f < 0) break;
-        Penetration found = descend(difference, polytope.normal(f), expansions);
-        seen[2 * starts] = polytope.normal(f);
-        seen[2 * starts + 1] = found.outward;
-        if (starts == 0 || found.depth < best.depth) best = found;
-    }
-    return best;
-}
-
 // The foot of the origin on the plane of face f. A face of the difference may be several coplanar triangles: the foot
 // lies in one of them.
 void foot_on_face(const CoreDifference& difference, const Polytope& polytope, int f, double tolerance,
@@ -236,8 +180,8 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
     SmoothMinimum smooth{{}, false, difference.curved ? 0.1 * size : -1.0};
     for (int expansions = 0;; ++expansions) {
         int f = polytope.nearest_face();
+        DifferencePoint p = difference.support(polytope.direction(f));  // does not wait for the normal's square root
         const Vec3d n = polytope.normal(f);
-        DifferencePoint p = difference.support(n);
         observer.polytope(polytope, f, p);
         double lower = polytope.distance(f, n), upper = dot(n, p.y), gap = upper - lower;
         smooth.look(difference, n, lower, gap);
@@ -248,11 +192,11 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
         const Tangency& t = smooth.tangency;
         const double depth = maximum(upper, lower);
         const bool is_smooth = smooth.found && t.height <= depth + tangent * size;
-        if (!is_smooth && gap > (difference.curved ? tolerance : repeated * size)) {
-            result = descend_from_faces(difference, polytope, expansions);
+        if (!(proven && is_smooth) && gap > (difference.curved ? tolerance : repeated * size)) {
+            result = search_minima(difference, polytope, is_smooth ? t.height : 1e300, expansions);
         } else {
             result = {depth, n, {}, {}, gap, expansions};
-            foot_on_face(difference, polytope, f, tolerance, result);
+            if (!is_smooth) foot_on_face(difference, polytope, f, tolerance, result);
         }
         if (smooth.found && t.height <= result.depth + tangent * size)
             result = {t.height, t.direction, t.p.y, snap_to_core(difference.a, to_double(t.p.a)), t.miss, expansions};

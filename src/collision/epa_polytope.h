@@ -25,10 +25,12 @@ public:
 
     int face_end() const { return face_end_; }  // faces are 0 ... face_end() - 1, removed ones infinitely far
     bool alive(int f) const { return key_[f] < far; }
+    Vec3d direction(int f) const { return faces_[f].n; }  // the normal at any length
     Vec3d normal(int f) const { return (1.0 / square_root(faces_[f].nn)) * faces_[f].n; }
     // From the origin to the plane of face f with normal n, positive where the origin lies inside.
     double distance(int f, Vec3d n) const { return dot(n, y_[faces_[f].vertex[0]]); }
     Simplex triangle(int f) const;
+    const uint8_t* corners(int f) const { return faces_[f].vertex; }  // three vertices by number
 
 private:
     static constexpr double far = 1e300;

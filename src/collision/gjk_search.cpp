@@ -17,9 +17,13 @@ constexpr double touching = 1e-12;
 // the error of the normal at every distance, and relative to S. Polytopes end exactly, at a vertex they already have.
 constexpr double relative_gap = 1e-9, relative_gap_curved = 1e-7;
 constexpr double absolute_gap = 1e-14, absolute_gap_curved = 1e-8;
+// Of S. Where |v| has grown by no more than this it may have shrunk: it is only known to rounding. Along curved edges
+// the direction of v still improves then. Polytopes have too few points for that to last.
+constexpr double rounding_curved = 2e-15;
 // Curved cores: Newton's method is tried when the distance is known to this times S, and again 100 times nearer. Its
 // result counts where the support point misses the line along the direction by less than `tangent` times S.
 constexpr double newton_gap = 0.02, tangent = 1e-9;
+
 void keep_part(Simplex& s, const SubSimplex& part) {
     s.count = part.count;
     for (int i = 0; i < part.count; ++i) {
@@ -76,6 +80,7 @@ Search search(const CoreDifference& difference, Simplex& s, SimplexSolver method
     const double least_gap = (difference.curved ? absolute_gap_curved : absolute_gap) * size;
     const double limit = max_distance > 0.0 ? max_distance * max_distance : 0.0;
     double newton_below = difference.curved ? newton_gap * size : 0.0;
+    const double noise = difference.curved ? rounding_curved * size : 0.0;
     double previous = 1e300;
     Search result{Outcome::overlap, {}, {}, 0.0, 0.0, 0};
     for (;; ++result.iterations) {
@@ -91,7 +96,8 @@ Search search(const CoreDifference& difference, Simplex& s, SimplexSolver method
         const double vy = dot(v, p.y), gap = vv - vy;  // lower bound of the distance, and what is left, times |v|
         if (vy > 0.0 && vy * vy > limit * vv) return end_at(result, Outcome::beyond, vy);
         bool settled = !(gap > relative * vv) || gap * gap <= least_gap * least_gap * vv;
-        if (settled || holds(s, p.y) || vv >= previous || result.iterations == max_iterations)
+        bool stuck = vv >= previous && vv >= previous + noise * square_root(vv);
+        if (settled || stuck || holds(s, p.y) || result.iterations == max_iterations)
             return end_at(result, Outcome::apart, vy);
         if (gap * gap < newton_below * newton_below * vv) {
             if (end_at_tangency(difference, s, gap / square_root(vv), result)) return result;

@@ -6,8 +6,9 @@
 
 namespace lendulet {
 
-// What a distance must be certified to, relative to S.
-inline constexpr double certified_distance = 1e-6;
+// What a distance must be certified to, relative to S: a quarter of what may be off relative to the extents of both
+// cores, since S counts up to twice the extent of a curved core and as much again for the offset.
+inline constexpr double certified_distance = 5e-7;
 
 enum class Outcome : uint8_t {
     apart,    // the distance is found

@@ -45,20 +45,27 @@ LENDULET_FORCE_INLINE bool is_flat(const Vec3d* y, Vec3d e1, Vec3d e2, Vec3d e3,
 LENDULET_FORCE_INLINE SubSimplex vertex_part(const Vec3d* y, int i) {
     return {1, {static_cast<uint8_t>(i)}, {1.0}, y[i]};
 }
-// The point between y[i] and y[j] whose signed distances from the end planes are ti (behind i) and tj (behind j).
+// The point between y[i] and y[j] whose signed distances from the end planes are ti (behind i) and tj (behind j). It is
+// reached from the end that weighs more: the other may be farther by any factor, and so would be the rounding.
 LENDULET_FORCE_INLINE SubSimplex edge_part(const Vec3d* y, int i, int j, double ti, double tj) {
-    double s = ti / (ti + tj);
-    return {2, {static_cast<uint8_t>(i), static_cast<uint8_t>(j)}, {1.0 - s, s}, y[i] + s * (y[j] - y[i])};
+    const double scale = 1.0 / (ti + tj), wi = scale * tj, wj = scale * ti;
+    const int from = wi >= wj ? i : j;
+    return {2,
+            {static_cast<uint8_t>(i), static_cast<uint8_t>(j)},
+            {wi, wj},
+            y[from] + minimum(wi, wj) * (y[i + j - from] - y[from])};
 }
 // Inside the triangle i, j, k with normal n and twice the signed areas ai, aj, ak opposite to its corners. The closest
-// point is taken along the normal, which keeps its direction exact however far the triangle reaches.
+// point is taken along the normal, which keeps its direction exact however far the triangle reaches. Its length comes
+// from the corner that weighs most, for the same reason.
 LENDULET_FORCE_INLINE SubSimplex face_part(const Vec3d* y, int i, int j, int k, Vec3d n, double ai, double aj,
                                            double ak) {
-    double scale = 1.0 / (ai + aj + ak);
+    const double scale = 1.0 / (ai + aj + ak), most = maximum(ai, aj);
+    const int nearest = ak > most ? k : aj > ai ? j : i;
     return {3,
             {static_cast<uint8_t>(i), static_cast<uint8_t>(j), static_cast<uint8_t>(k)},
             {scale * ai, scale * aj, scale * ak},
-            (dot(n, y[i]) / dot(n, n)) * n};
+            (dot(n, y[nearest]) / dot(n, n)) * n};
 }
 
 }  // namespace lendulet

@@ -138,6 +138,50 @@ TEST(GjkCurved, CurvedCoresAndHullsAreCertified) {
                   [](Random& random, float scale) { return random_hull(random, scale, 20); });
 }
 
+// Pairs whose difference has a valley of directions that are nearly as good, with several minima, of which the full
+// polytope of EPA proves none; and two that nearly touch along a rim, where GJK's distance falls by less than rounding
+// before its direction is right. True distances by search from 20000 directions.
+TEST(GjkCurved, ValleysAndRimsThatOnceMisledAreCertified) {
+    struct Known {
+        Core a, b;
+        Transform b_in_a;
+        float distance;
+    };
+    auto balls = [](float bottom, float half, float top) { return make_tapered(true, bottom, half, top); };
+    auto discs = [](float bottom, float half, float top) { return make_tapered(false, bottom, half, top); };
+    const Known known[] = {
+        {balls(0.378327847f, 0.897848725f, 0.378327847f),
+         discs(0.870349348f, 0.821593881f, 0.916896105f),
+         {{0.682721376f, 0.733158231f, 1.00772452f}, {0.336378217f, -0.137992471f, 0.00166574481f, -0.931560457f}},
+         -0.381308820f},
+        {discs(0.0f, 0.280073017f, 0.483266354f),
+         discs(0.490417928f, 0.423519611f, 0.490417928f),
+         {{-0.10984236f, 0.360191226f, -0.595852256f}, {-0.629902959f, 0.672002316f, 0.0517806597f, 0.385945588f}},
+         -0.480168698f},
+        {balls(4282.81152f, 6343.87012f, 0.0f),
+         discs(5798.19922f, 9732.48145f, 0.0f),
+         {{9623.2207f, -5085.13281f, -669.526367f}, {0.138627663f, -0.076347284f, 0.73839283f, 0.655537546f}},
+         -4280.95556f},
+        {discs(0.585555196f, 0.306161582f, 0.535092592f),
+         balls(0.291090727f, 0.937970042f, 0.274044305f),
+         {{0.824043453f, 0.990733385f, 0.00566008687f}, {-0.312137902f, -0.920416594f, 0.193410352f, 0.134147108f}},
+         -0.291189976f},
+        {make_box({0.878034472f, 0.985913515f, 0.69445461f}),
+         discs(0.710915625f, 0.632181764f, 0.710915625f),
+         {{0.820069551f, 1.66767859f, -1.35543191f}, {-0.699072838f, -0.452569783f, -0.539198697f, 0.125469074f}},
+         -1.41607075e-7f},
+        {make_box({4762.00049f, 8457.52637f, 6678.13232f}),
+         discs(5490.76416f, 8467.7959f, 5490.76416f),
+         {{-9104.22852f, 6392.04395f, -15551.1758f}, {-0.575192332f, -0.248451635f, 0.712896228f, 0.314967483f}},
+         3.40447074e-4f}};
+    Tally tally("valleys and rims");
+    for (const Known& k : known)
+        for (SimplexSolver method : both_methods) {
+            ConvexDistance r = query(k.a, k.b, k.b_in_a, method);
+            tally.judge(k.a, k.b, k.b_in_a, r, {k.distance, wide(r.normal), -1e300L});
+        }
+}
+
 // Caps, rims and sides that meet exactly, concentric and coaxial bodies: every direction of a circle is as good.
 TEST(GjkCurved, AlignedBodiesAgreeWithClosedForms) {
     for (SimplexSolver method : both_methods) {

@@ -115,6 +115,28 @@ TEST(GjkSimplex, SolversFindTheSamePartWhereItIsClear) {
     EXPECT_GT(inside, clear / 500);  // the case of the origin inside was among them
 }
 
+// One corner lies at 1e-12 of the others: reached from another, the closest point would be off by all of its distance.
+TEST(GjkSimplex, PointsNearTheOriginKeepTheirDigits) {
+    const Points face{{{-0x1.b44f68p-1, 0x1.f91d2cp-1, 0x1.2e62f8p-2},
+                       {0x1.5c251cp-1, 0x1.9822d8p-2, 0x1.25bfacp-1},
+                       {-0x1.5c872b68fd61fp-49, -0x1.e5ccd51f08f9ap-41, 0x1.4efb60ecfe684p-41},
+                       {-0x1.9270c8p-2, -0x1.be94ap-4, -0x1.7e15ep-4}},
+                      4,
+                      1.0};
+    const Points edge{{{0x1.5349f4p-1, -0x1.2c84ap-4, 0x1.a6a438p-1},
+                       {-0x1.156414283d2a2p-40, -0x1.2cee5d51f6284p-41, 0x1.98b95b8c54153p-41},
+                       {-0x1.76db8cp-1, -0x1.47ac8p-4, -0x1.fe5618p-2}},
+                      3,
+                      1.0};
+    for (SimplexSolver method : both_methods)
+        for (const Points& points : {face, edge}) {
+            SubSimplex part = closest_sub_simplex(method, points.y, points.count);
+            ASSERT_EQ(part.count, points.count - 1);
+            for (int i = 0; i < part.count; ++i)
+                ASSERT_NEAR(dot(part.point, points.y[part.index[i]]), length_squared(part.point), 1e-26);
+        }
+}
+
 TEST(GjkSimplex, ExactCasesByHand) {
     const Vec3d y[4] = {{1, 1, 1}, {1, -1, 1}, {1, 0, -1}, {2, 0, 0}};
     for (SimplexSolver method : both_methods) {
