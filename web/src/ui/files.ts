@@ -3,8 +3,8 @@ import type { App } from "../app";
 import { readGltf } from "../engine/gltf";
 import { isRecording, RecordingWorld } from "../engine/recording";
 import { Refused } from "../engine/types";
+import { isDeeds } from "../deeds";
 import { element } from "./dom";
-import { isDeeds } from "./permalink";
 import { download, Recorder, type Repro } from "./record";
 
 const largest = 256 * 1024 * 1024; // bytes of a file

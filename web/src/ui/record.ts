@@ -1,7 +1,7 @@
 // Files made in the page: recordings (io/recording.h), repro files, pictures, films.
 import { Fnv } from "../engine/fnv";
 import { poseStride, type Shapes, type Surface } from "../engine/types";
-import type { Deed } from "../player";
+import type { Deed } from "../deeds";
 
 export function download(name: string, content: BlobPart): void {
     const link = document.createElement("a");

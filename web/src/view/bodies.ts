@@ -196,6 +196,9 @@ export class Bodies {
     isDynamic(body: number): boolean {
         return this.types[body] === BodyType.dynamic;
     }
+    typeOf(body: number): BodyType {
+        return this.types[body];
+    }
 
     // Bounds of what moves; of everything where nothing does. Shapes without end are left out.
     measure(poses: Float32Array): THREE.Box3 {

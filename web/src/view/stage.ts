@@ -106,6 +106,13 @@ export class Stage {
         this.controls.update();
     }
 
+    // From a place at a target: six numbers.
+    look(view: number[]): void {
+        this.camera.position.fromArray(view);
+        this.controls.target.fromArray(view, 3);
+        this.controls.update();
+    }
+
     // Moves what is looked at, and the camera with it, so many times as far away.
     shift(by: THREE.Vector3, farther: number): void {
         const { camera, controls } = this, away = camera.position.clone().sub(controls.target).multiplyScalar(farther);
