@@ -1,7 +1,7 @@
 // The viewer as a whole: one world, its picture, and what can be done with both. The page's controls and the keyboard
 // (ui/controls.ts) call its methods.
 import { Comparison } from "./comparison";
-import { type Deed, fits } from "./deeds";
+import { fits, type Script } from "./deeds";
 import { EngineStopped } from "./engine/wasi";
 import { type Command, Refused, type World } from "./engine/types";
 import { Hand } from "./hand";
@@ -59,7 +59,7 @@ export class App {
         this.pointer = new Pointer(this.picture, this.player, (body) => this.pick(body), guarded);
         this.hand = new Hand(stage, this.player, this.pointer);
         this.comparison = new Comparison(this.player, sources.choices[0], sources.stages.indexOf("broad_phase"));
-        this.figures = new Figures(sources.stages);
+        this.figures = new Figures(sources.stages, stage.drawer.name);
         this.tuning = new Tuning(sources.choices, (settings) => this.change({ do: "set", ...settings }));
         this.list = new SceneList(sources.scenes, (scene) => this.open(scene));
         this.card = new CompareCard(this);
@@ -87,14 +87,14 @@ export class App {
     // --- scenes
 
     // False, with a message, where the engine in the page refuses the name.
-    open(scene: string, link: Link = {}, toDo: Deed[] = link.deeds ?? []): boolean {
-        return this.openWith(scene, () => this.sources.open(scene), link, toDo);
+    open(scene: string, link: Link = {}, script: Script = { deeds: link.deeds ?? [] }): boolean {
+        return this.openWith(scene, () => this.sources.open(scene), link, script);
     }
-    openWith(name: string, make: Make, link: Link = {}, toDo: Deed[] = []): boolean {
+    openWith(name: string, make: Make, link: Link = {}, script: Script = { deeds: [] }): boolean {
         try {
             this.take(make, (world) => {
                 this.make = make;
-                this.show(world, name, link, toDo);
+                this.show(world, name, link, script);
             });
         } catch (error) {
             if (!(error instanceof Refused)) throw error;
@@ -110,14 +110,14 @@ export class App {
         if (made instanceof Promise) made.then(arrived, (error: Error) => say(error.message));
         else arrived(made);
     }
-    private show(world: World, scene: string, link: Link, toDo: Deed[]): void {
+    private show(world: World, scene: string, link: Link, script: Script): void {
         const name = scene.split(":")[0], shown = shownAs(name), { picture, stage } = this;
         this.opened();
         this.comparison.stop();
         picture.setVisuals(null);
         this.pointer.forget();
         this.saidLong = false;
-        this.player.install(world, scene, toDo);
+        this.player.install(world, scene, script);
         this.pick(null);
         showHeading(scene, this.sources.scenes);
         this.list.mark(name);
@@ -218,6 +218,13 @@ export class App {
         return this.player.twin ? this.picture.middle : [box.left + box.width / 2, box.top + box.height / 2];
     }
     readonly say = say;
+    // The engine behind the stream is no more.
+    lost(sentence: string): void {
+        this.player.playing = false;
+        this.comparison.stop();
+        this.card.show();
+        say(sentence, true);
+    }
 
     // What the engine refuses is said; the page goes on. Where the engine itself has stopped, so does the page.
     guarded(action: () => void): void {

@@ -5,15 +5,16 @@ import type { Companions, Player } from "./player";
 
 export interface Row {
     name: string;
-    time: number; // ms of a step, smoothed
+    time: number; // ms of a step, a mean
     same: boolean; // the bits are the world's
 }
 
 const firstFork = 2; // of number 1 is the other future
-const share = 0.06;  // of the last step in the mean
+const fewest = 90;    // steps whose mean is shown; clocks of browsers are coarse
+const far = 4;        // times of the mean, beyond which a step was interrupted
 
 export class Comparison implements Companions {
-    private lanes: { name: string; world: World; time: number }[] = [];
+    private lanes: { name: string; world: World; time: number; steps: number }[] = [];
 
     // `names`: broad phases; `stage`: the number of theirs among the stages of a step.
     constructor(private readonly player: Player, private readonly names: string[], private readonly stage: number) {}
@@ -37,7 +38,7 @@ export class Comparison implements Companions {
             if (!world) throw new Refused("A recording has nothing left to find.");
             world.failed = () => undefined; // the world's own sentence is enough
             world.change({ do: "set", broadPhase });
-            this.lanes.push({ name, world, time: 0 });
+            this.lanes.push({ name, world, time: 0, steps: 0 });
         });
     }
     private leave(): void {
@@ -49,7 +50,8 @@ export class Comparison implements Companions {
         for (const lane of this.lanes) {
             lane.world.run(steps);
             const time = lane.world.statistics()?.stages[this.stage] ?? 0;
-            lane.time = lane.time === 0 ? time : (1 - share) * lane.time + share * time;
+            const most = lane.steps > fewest ? far * lane.time + 0.1 : Infinity;
+            lane.time += (Math.min(time, most) - lane.time) / Math.min(++lane.steps, fewest);
         }
     }
     change(command: Command): void {
@@ -59,10 +61,10 @@ export class Comparison implements Companions {
     }
     jumped(): void {
         if (!this.on) return;
-        const times = this.lanes.map(({ time }) => time);
+        const old = this.lanes.map(({ time, steps }) => ({ time, steps }));
         this.leave();
         this.fork();
-        this.lanes.forEach((lane, i) => (lane.time = times[i]));
+        this.lanes.forEach((lane, i) => Object.assign(lane, old[i]));
     }
 
     rows(): Row[] {

@@ -7,6 +7,12 @@ export interface Deed {
     command: Command;
 }
 
+// What is to be done in a world, as it was once done by hand. `end`: what to do after so many steps.
+export interface Script {
+    deeds: Deed[];
+    end?: { step: number; reached: () => void };
+}
+
 const longest = 8000; // characters of an address; browsers and chats take that many
 
 type Test = (value: unknown) => boolean;

@@ -7,9 +7,10 @@ import type { Stage } from "./view/stage";
 const farther = 1.7; // times as far away the camera is where two futures stand side by side
 
 export class Futures {
-    readonly bodies = new Bodies();
+    readonly bodies: Bodies;
 
     constructor(private readonly player: Player, private readonly stage: Stage) {
+        this.bodies = new Bodies(stage.drawer.groundMaterial);
         this.bodies.group.visible = false;
         stage.scene.add(this.bodies.group);
     }

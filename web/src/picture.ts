@@ -16,7 +16,7 @@ import { type Colouring, light, type Theme } from "./view/theme";
 import { Visuals } from "./view/visuals";
 
 export class Picture {
-    readonly bodies = new Bodies();
+    readonly bodies: Bodies;
     readonly structure = new Structure();
     readonly grip = new GripLine();
     visuals: Visuals | null = null;
@@ -32,6 +32,7 @@ export class Picture {
     private drawnShare = 0;
 
     constructor(readonly stage: Stage, private readonly player: Player, private readonly inspector: Inspector) {
+        this.bodies = new Bodies(stage.drawer.groundMaterial);
         this.futures = new Futures(player, stage);
         this.follow = new Follow(stage);
         const { bodies, marks, structure, links, grip } = this;

@@ -1,6 +1,6 @@
 // Runs a world: asks for steps at the pace of the clock, keeps the last two states for drawing between them, the past,
 // and what was done by hand. A fork runs beside it, step for step.
-import { type Deed, note, tidy } from "./deeds";
+import { type Deed, note, type Script, tidy } from "./deeds";
 import { type Command, poseStride, type World } from "./engine/types";
 import { History, type Moment } from "./history";
 
@@ -34,6 +34,7 @@ export class Player {
     private shown: number | null = null;
     private asked = 0; // when the last steps were asked for, ms
     private toDo: Deed[] = []; // of a repro file, in order of steps
+    private end: Script["end"]; // of the same file
     private twinToDo: Deed[] = []; // what was done the first time
 
     // `changed`: bodies came or went, or all are those of another scene; `refused`: a sentence.
@@ -42,13 +43,14 @@ export class Player {
         private readonly refused: (sentence: string) => void,
     ) {}
 
-    // The world is the player's from now on. `toDo`: what is to be done in it, as it was once done by hand.
-    install(world: World, sceneName: string, toDo: Deed[] = []): void {
+    // The world is the player's from now on.
+    install(world: World, sceneName: string, script: Script = { deeds: [] }): void {
         this.leaveTwin();
         if (this.world) this.world.destroy();
         this.world = world;
         this.sceneName = sceneName;
-        this.toDo = [...toDo];
+        this.toDo = [...script.deeds];
+        this.end = script.end;
         this.deeds = [];
         this.history.clear();
         this.shown = null;
@@ -108,8 +110,9 @@ export class Player {
     }
     private ask(steps: number): void {
         // Not beyond what is still to be done.
-        const next = this.toDo[0] ?? this.twinToDo[0], count = this.world.stepCount;
-        if (next && next.step > count) steps = Math.min(steps, next.step - count);
+        const count = this.world.stepCount;
+        for (const next of [this.toDo[0], this.twinToDo[0], this.end])
+            if (next && next.step > count) steps = Math.min(steps, next.step - count);
         this.left -= steps * this.world.stepSize;
         while (this.twin && (this.twinToDo[0]?.step ?? Infinity) <= count)
             this.twin.change(this.twinToDo.shift()!.command);
@@ -132,11 +135,17 @@ export class Player {
             this.stepped(this.now);
         }
         if (this.now.length !== count) this.changed(false);
-        if (steps > 0) this.perform();
+        this.perform();
     }
     // What a repro file or an address has done by now.
     private perform(): void {
         while ((this.toDo[0]?.step ?? Infinity) <= this.world.stepCount) this.act(this.toDo.shift()!.command);
+        if (!this.end || this.end.step > this.world.stepCount) return;
+        void this.world.hash; // a stream sends it to who asks
+        if (this.world.busy || this.toDo.length > 0) return;
+        const { step, reached } = this.end;
+        this.end = undefined;
+        if (step === this.world.stepCount) reached();
     }
     private readPoses(): void {
         const poses = this.world.poses();
@@ -187,6 +196,7 @@ export class Player {
         this.left = 0;
         this.deeds = this.deeds.filter((deed) => deed.step < moment.step);
         this.toDo = [];
+        this.end = undefined;
         // Where results depended on other settings then, these come first.
         const { settings } = moment.kept;
         if (settings && JSON.stringify(settings) !== JSON.stringify(this.world.settings()))

@@ -45,9 +45,9 @@ export const fileChecks = {
         const data = readFileSync(new URL(meshes.buffers[0].uri, folder)).toString("base64");
         meshes.buffers[0].uri = `data:application/octet-stream;base64,${data}`;
         await drop(page, "meshes.gltf", JSON.stringify(meshes));
-        await until(page, () => window.lendulet.player.sceneName === "meshes.gltf" && window.lendulet.visuals !== null);
+        await until(page, () => window.lendulet.player.sceneName === "meshes.gltf" && window.lendulet.picture.visuals !== null);
         assert.ok((await steps(page, 30)).now.every(Number.isFinite));
-        assert.equal(await page.evaluate(() => window.lendulet.visuals.parts.size), 1); // the bowl alone is a mesh
+        assert.equal(await page.evaluate(() => window.lendulet.picture.visuals.parts.size), 1); // the bowl alone is a mesh
         await drop(page, "playground.gltf", gltf);
         await until(page, () => window.lendulet.player.sceneName === "playground.gltf");
         for (const [name, bytes, said] of [["broken.gltf", "{\"asset\":", "malformed"], ["old.gltf", "{}", "glTF 2.0"],
@@ -67,7 +67,7 @@ export const fileChecks = {
             const page = await open({ ...wide, acceptDownloads: true }, "?shadows=0#scene=convex_pile:30&paused=1");
             await page.click("#record");
             await steps(page, 20);
-            await page.evaluate(() => window.lendulet.shoot(300, 200));
+            await page.evaluate(() => window.lendulet.hand.shoot(300, 200));
             const { now, hash } = await steps(page, 10);
             const bytes = await saved(page, () => page.click("#record"));
             const file = join(folder, "page.rec");
@@ -219,7 +219,7 @@ export const fileChecks = {
         await steps(page, 70);
         const lines = () => page.evaluate(() => {
             window.lendulet.frame();
-            const { children } = window.lendulet.structure.group;
+            const { children } = window.lendulet.picture.structure.group;
             return children.map((mesh) => (mesh.visible ? mesh.geometry.drawRange.count : 0));
         });
         await page.selectOption("#set-broad-phase", { label: "rtree-omt" });

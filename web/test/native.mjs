@@ -155,9 +155,9 @@ export const nativeChecks = {
             }));
             const native = await startNative(program, folder, join(place, "crate.gltf"));
             const page = await open({}, "?shadows=0#paused=1", native.url);
-            await until(page, () => window.lendulet?.visuals);
+            await until(page, () => window.lendulet?.picture.visuals);
             const drawn = await page.evaluate(() => {
-                const { visuals, bodies } = window.lendulet, pictures = [];
+                const { visuals, bodies } = window.lendulet.picture, pictures = [];
                 visuals.group.traverse(({ material }) => material && pictures.push(material.map?.image.width));
                 window.lendulet.frame();
                 return { parts: [...visuals.parts.keys()], hidden: [...bodies.hidden.keys()], pictures };

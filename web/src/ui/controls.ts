@@ -5,6 +5,7 @@ import { type Colouring, colourings, dark, light } from "../view/theme";
 import { drawings } from "../view/structure";
 import { element, make } from "./dom";
 import { Files } from "./files";
+import { readLink } from "./permalink";
 
 export function connect(app: App): void {
     const button = (id: string, action: () => void) =>
@@ -79,7 +80,8 @@ export function connect(app: App): void {
     });
 
     drawing(app);
-    new Files(app);
+    const files = new Files(app), { repro } = app.sources;
+    if (repro && !readLink().deeds) app.guarded(() => files.openRepro(repro.name, repro.bytes));
     sources(app);
     sheets();
     const system = matchMedia("(prefers-color-scheme: dark)");

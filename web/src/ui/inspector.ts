@@ -118,6 +118,7 @@ export class Inspector {
         this.offer();
         element("nothing").hidden = body !== null;
         element("picked").hidden = body === null;
+        if (body !== null) element("inspector").scrollIntoView({ block: "nearest" });
     }
     // A joint of the picked body; again: the body.
     private pickJoint(joint: number): void {

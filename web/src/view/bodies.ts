@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import { BodyType, type Collider, groupStride, poseStride, type Shapes, ShapeType } from "../engine/types";
 import { modelOf } from "./geometry";
-import { bodyMaterial, glassMaterial, groundMaterial, wallMaterial } from "./materials";
+import { bodyMaterial, glassMaterial, wallMaterial } from "./materials";
 import { type Colouring, colourOf, colourOfGroup, driven, highlight } from "./theme";
 
 interface Batch {
@@ -17,7 +17,7 @@ interface Batch {
 // How colliders are drawn: what moves, what it stands on, and containers, into which one must see.
 type Kind = "body" | "ground" | "glass" | "wall";
 
-const materials = { ground: groundMaterial, glass: glassMaterial, wall: wallMaterial, body: bodyMaterial };
+const materials = { glass: glassMaterial, wall: wallMaterial, body: bodyMaterial };
 
 function kindOf(c: Collider, name: string, parts: number): Kind {
     const type = c.bodyType;
@@ -43,6 +43,8 @@ export class Bodies {
     private batches: Batch[] = [];
     private types: BodyType[] = [];
     private readonly geometries = new Map<string, THREE.BufferGeometry>(); // by ShapeModel.key
+
+    constructor(private readonly groundMaterial: () => THREE.Material) {}
 
     // Anew from the world's colliders. `other`: of another scene, whose surfaces must be read again.
     build(shapes: Shapes, other: boolean): void {
@@ -79,7 +81,7 @@ export class Bodies {
             geometry = model ? model.make(shapes.surface) : new THREE.PlaneGeometry(2e3, 2e3);
             this.geometries.set(key, geometry);
         }
-        const material = materials[kind]();
+        const material = kind === "ground" ? this.groundMaterial() : materials[kind]();
         const isClear = kind === "glass" || kind === "wall";
         const mesh = new THREE.InstancedMesh(geometry, material, colliders.length);
         mesh.instanceMatrix.setUsage(fixed ? THREE.StaticDrawUsage : THREE.DynamicDrawUsage);
