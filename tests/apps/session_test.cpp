@@ -110,7 +110,7 @@ TEST(Session, ForksForEachBroadPhase) {
     EXPECT_EQ(forks, 8);
     Answer own = client.ask({{"do", {capsule}}, {"steps", 60}, {"want", {"hash", "poses"}}});
     EXPECT_EQ(own.error(), "");
-    EXPECT_EQ(own.sections[Section::poses].size(), 42 * sizeof(lendulet_pose));
+    EXPECT_EQ(own.sections[Section::poses].size(), 46 * sizeof(lendulet_pose));
     for (int i = 1; i <= forks; ++i)
         EXPECT_EQ(client.ask({{"world", i}, {"want", {"hash"}}}).state().hash, own.state().hash) << i;
     client.ask({{"do", {{{"do", "join"}, {"to", 3}}}}});

@@ -12,6 +12,7 @@ import { explainChecks } from "./explain.mjs";
 import { fileChecks } from "./files.mjs";
 import { nativeChecks } from "./native.mjs";
 import { serve } from "./server.mjs";
+import { toolChecks } from "./tools.mjs";
 
 const [folder, into = "-", words = ""] = process.argv.slice(2);
 const quick = words === "quick";
@@ -36,13 +37,14 @@ const ours = /^(http:\/\/(127\.0\.0\.1|localhost):|ws:\/\/localhost:|data:|blob:
 async function open(options = {}, address = "?shadows=0", url = server.url) {
     const context = await browser.newContext({ viewport: { width: 640, height: 400 }, ...options });
     const page = await context.newPage();
+    page.setDefaultTimeout(90000); // the machine may be busy
     page.on("pageerror", (error) => problems.push(`error in the page: ${error.message}`));
     page.on("console", (entry) => entry.type() === "error" && problems.push(`the page says: ${entry.text()}`));
     page.on("request", (request) => {
         if (!ours.test(request.url())) problems.push(`asks for ${request.url()}`);
     });
     await page.goto(url + address);
-    await page.waitForFunction(() => window.lendulet !== undefined, null, { polling: 100, timeout: 90000 });
+    await page.waitForFunction(() => window.lendulet !== undefined, null, { polling: 100 });
     return page;
 }
 
@@ -53,7 +55,7 @@ const tools = {
 };
 let failed = 0;
 const isChosen = (name) => (quick ? inQuick.some((start) => name.startsWith(start)) : name.includes(words));
-const all = Object.entries({ ...checks, ...explainChecks, ...fileChecks, ...nativeChecks });
+const all = Object.entries({ ...checks, ...explainChecks, ...fileChecks, ...toolChecks, ...nativeChecks });
 const chosen = all.filter(([name]) => isChosen(name));
 for (const [name, check] of chosen) {
     const start = Date.now();

@@ -99,7 +99,7 @@ export class Bodies {
                 new THREE.Vector3(...c.position), new THREE.Quaternion(x, y, z, w), one);
         });
         const scales = colliders.map((c) => new THREE.Vector3(...(modelOf(c)?.scale ?? [1, 1, 1])));
-        const reaches = colliders.map((c) => (c.type === ShapeType.plane ? Infinity : 0.8 * Math.max(...c.size)));
+        const reaches = colliders.map((c) => (c.type === ShapeType.plane ? Infinity : 0.9 * Math.max(...c.size)));
         this.batches.push({ mesh, colliders, scales, locals, reaches, fixed });
         this.group.add(mesh);
     }

@@ -20,7 +20,9 @@ function firstSide(size: THREE.Vector3): THREE.Vector3 {
     const height = size.y / Math.max(size.x, size.z, 1e-6);
     return new THREE.Vector3(0.62, THREE.MathUtils.clamp(0.95 - 1.2 * height, 0.42, 0.95), 1).normalize();
 }
-const margin = 0.98; // of what is looked at: boxes are seldom full to their corners
+// How much room there is around what is looked at, and by how much of the picture it stands below the middle, beneath
+// the title.
+const margin = 1.1, lift = 0.045;
 
 export class Stage {
     readonly scene = new THREE.Scene();
@@ -87,8 +89,8 @@ export class Stage {
     }
 
     // Looks at what lies within the bounds, from a little above. `least`: radius of the smallest thing that fills the
-    // picture, m.
-    frame(bounds: THREE.Box3, least = 1.2): void {
+    // picture, m. `tight`: as large as it can be.
+    frame(bounds: THREE.Box3, least = 1.2, tight = false): void {
         const sphere = bounds.getBoundingSphere(new THREE.Sphere());
         const radius = Math.min(Math.max(sphere.radius, least), 400);
         this.setReach(radius);
@@ -96,7 +98,14 @@ export class Stage {
         this.controls.target.copy(sphere.center);
         this.camera.position.copy(sphere.center).add(side);
         this.camera.lookAt(sphere.center);
-        this.camera.position.copy(sphere.center).addScaledVector(side, this.distanceOf(bounds, 0.6 * least));
+        const distance = (tight ? 0.98 : margin) * this.distanceOf(bounds, 0.6 * least);
+        this.camera.position.copy(sphere.center).addScaledVector(side, distance);
+        if (!tight) {
+            const up = new THREE.Vector3(0, 1, 0).applyQuaternion(this.camera.quaternion);
+            up.multiplyScalar(2 * lift * distance * Math.tan((this.camera.fov * Math.PI) / 360));
+            this.camera.position.add(up);
+            this.controls.target.add(up);
+        }
         this.controls.minDistance = radius / 40;
         this.controls.maxDistance = 12 * radius;
         this.controls.update();
@@ -129,7 +138,7 @@ export class Stage {
             const [x, y] = [corner.x, corner.y].map((v) => Math.max(Math.abs(v), least));
             distance = Math.max(distance, corner.z + Math.max(x / wide, y / high));
         }
-        return margin * distance;
+        return distance;
     }
 
     // Shadows fall around what moves.
