@@ -1,5 +1,5 @@
-// All that is seen of a world: its bodies, what is drawn over them, and the camera's way. The app says what is shown and
-// in which colours; a frame draws what has changed.
+// All that is seen of a world: its bodies, what is drawn over them, and the camera's way. The app says what is shown
+// and in which colours; a frame draws what has changed.
 import * as THREE from "three";
 import { BodyType, poseStride } from "./engine/types";
 import { Follow } from "./follow";

@@ -225,8 +225,8 @@ export class Player {
 
     // --- two futures
 
-    // A second world from here on, left alone while this one is played with. From the past on, what was done by hand the
-    // first time is done in it again: it is what happened, beside what may.
+    // A second world from here on, left alone while this one is played with. From the past on, what was done by hand
+    // the first time is done in it again: it is what happened, beside what may.
     fork(): void {
         const moment = this.moment, later = moment ? this.deeds.filter((deed) => deed.step >= moment.step) : [];
         this.resume();

@@ -50,9 +50,11 @@ export const fileChecks = {
         await drop(page, "other.bin", "x", ...meshes.slice(2));
         await until(page, () => document.getElementById("message").textContent.includes("meshes.bin, which"));
         await drop(page, ...meshes);
-        await until(page, () => window.lendulet.player.sceneName === "meshes.gltf" && window.lendulet.picture.visuals !== null);
+        await until(page, () => window.lendulet.player.sceneName === "meshes.gltf");
+        await until(page, () => window.lendulet.picture.visuals !== null);
         assert.ok((await steps(page, 30)).now.every(Number.isFinite));
-        assert.equal(await page.evaluate(() => window.lendulet.picture.visuals.parts.size), 1); // the bowl alone is a mesh
+        // The bowl alone is a mesh.
+        assert.equal(await page.evaluate(() => window.lendulet.picture.visuals.parts.size), 1);
         // Its repro file holds the file.
         await page.click("#open-figures");
         const { hash } = await steps(page, 30);
@@ -144,8 +146,9 @@ export const fileChecks = {
         await until(page, () => document.getElementById("message").textContent.startsWith("The same bits"));
         const folder = mkdtempSync(join(tmpdir(), "lendulet-"));
         try {
-            writeFileSync(join(folder, "again.json"), repro);
-            const text = execFileSync(program, ["run", join(folder, "again.json"), "--json", "-"], { encoding: "utf8" });
+            const file = join(folder, "again.json");
+            writeFileSync(file, repro);
+            const text = execFileSync(program, ["run", file, "--quiet", "--json", "-"], { encoding: "utf8" });
             assert.equal(JSON.parse(text).hash, hash);
         } finally {
             rmSync(folder, { recursive: true });

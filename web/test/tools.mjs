@@ -1,5 +1,5 @@
-// Checks of the tools beside the scene: plots, the broad phases compared, what happened beside what may, shapes that are
-// dropped, what the address says, and how the page fits and is painted.
+// Checks of the tools beside the scene: plots, the broad phases compared, what happened beside what may, shapes that
+// are dropped, what the address says, and how the page fits and is painted.
 import assert from "node:assert/strict";
 
 const wide = { viewport: { width: 1120, height: 420 } }; // both panels are seen
@@ -84,7 +84,8 @@ export const toolChecks = {
                 player.fork();
                 hand.drop(...middle);
                 for (let i = 0; i < 70; ++i) player.step();
-                return { own: player.world.hash, other: player.twin.hash, bodies: player.twinNow.length - player.now.length };
+                const bodies = player.twinNow.length - player.now.length;
+                return { own: player.world.hash, other: player.twin.hash, bodies };
             });
             if (round === 0) assert.equal(now.other, first.hash, "what happened is not what happens");
             assert.notEqual(now.own, now.other);
@@ -142,12 +143,13 @@ export const toolChecks = {
             assert.equal(await page.evaluate(() => window.lendulet.player.deeds.length), 0, JSON.stringify(deeds));
         }
         // A deed that the engine refuses is said, and the page goes on.
-        const one = await open({}, "?shadows=0#scene=stack:3&paused=1&deeds="
-            + text([[3, { do: "sphere", radius: -1, at: [0, 5, 0], velocity: [0, 0, 0], density: 1 }]]));
-        await one.click("#play");
-        await until(one, () => !document.getElementById("message").hidden);
-        await one.click("#play");
-        await until(one, () => window.lendulet.player.world.stepCount > 10);
+        await page.evaluate((deeds) => (location.hash = `#scene=stack:9&deeds=${deeds}`),
+            text([[3, { do: "sphere", radius: -1, at: [0, 5, 0], velocity: [0, 0, 0], density: 1 }]]));
+        await until(page, () => window.lendulet.player.sceneName === "stack:9");
+        await page.click("#play");
+        await until(page, () => !document.getElementById("message").hidden);
+        await page.click("#play");
+        await until(page, () => window.lendulet.player.world.stepCount > 10);
     },
 
     async "tools: nothing is cut off, from 320 pixels on, and the first paint is within a second"({ open }) {
@@ -160,8 +162,8 @@ export const toolChecks = {
                 const list = [...document.querySelectorAll("#transport :is(button, select, input), #corner button")]
                     .filter((e) => e.checkVisibility());
                 const out = list.filter((e) => {
-                    const box = e.getBoundingClientRect();
-                    return box.left < 0 || box.top < 0 || box.right > innerWidth + 0.5 || box.bottom > innerHeight + 0.5;
+                    const { left, top, right, bottom } = e.getBoundingClientRect();
+                    return left < 0 || top < 0 || right > innerWidth + 0.5 || bottom > innerHeight + 0.5;
                 });
                 const canvas = document.getElementById("canvas").getBoundingClientRect();
                 return { ids: out.map((e) => e.id), wide: document.documentElement.scrollWidth - innerWidth,

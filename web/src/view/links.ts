@@ -1,5 +1,5 @@
-// Joints as thin rods, for scenes whose bodies would seem to hang from nothing: from one body's centre to the other's, or
-// to where it hangs from one that does not move.
+// Joints as thin rods, for scenes whose bodies would seem to hang from nothing: from one body's centre to the other's,
+// or to where it hangs from one that does not move.
 import * as THREE from "three";
 import type { JointInfo } from "../engine/types";
 

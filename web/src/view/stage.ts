@@ -35,7 +35,9 @@ export class Stage {
     private size = [0, 0];
     lost: (sentence: string) => void = () => undefined; // nothing is drawn any more
 
-    constructor(readonly canvas: HTMLCanvasElement, shadowSize: number, occlusion: boolean, make = webGl as MakeDrawer) {
+    constructor(
+        readonly canvas: HTMLCanvasElement, shadowSize: number, occlusion: boolean, make: MakeDrawer = webGl,
+    ) {
         const { scene, camera } = this;
         const lost = (sentence: string) => this.lost(sentence);
         this.drawer = make({ canvas, scene, camera, shadows: shadowSize > 0, occlusion, lost });
