@@ -82,7 +82,6 @@ export class Files {
 
     private saveRepro(): void {
         const { player } = this.app;
-        player.resume(); // what is seen is what is saved
         const repro: Repro = {
             lendulet: "repro", version: 1, scene: player.sceneName, steps: player.world.stepCount,
             hash: player.world.hash, deeds: player.deeds,
