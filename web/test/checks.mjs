@@ -228,6 +228,11 @@ export const checks = {
             app.hand.shoot(...app.stage.project([0, 4, 0]));
             document.getElementById("message").hidden = true;
         }, 70);
+        await show("phases", "box_pile:200", 60, () => window.lendulet.compare(true), 60);
+        await show("manifolds", "large_pyramid:4", 20, () => {
+            window.lendulet.setDrawn(["manifolds", "centres"]);
+            window.lendulet.setContacts(true);
+        }, 20);
         await show("joints", "ragdolls:6", 60, () => window.lendulet.setDrawn(["joints"]), 1);
     },
 };

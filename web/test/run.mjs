@@ -16,7 +16,7 @@ import { toolChecks } from "./tools.mjs";
 
 const [folder, into = "-", words = ""] = process.argv.slice(2);
 const quick = words === "quick";
-const inQuick = ["every scene", "play,", "picking", "balls,", "files: glTF", "explain: a phone"];
+const inQuick = ["every scene", "play,", "picking", "balls,", "files: glTF", "tools: all", "explain: a phone"];
 const images = into === "-" ? null : into;
 if (!folder) {
     console.error("usage: node test/run.mjs FOLDER [IMAGES [WORDS]]");
