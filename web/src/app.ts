@@ -122,6 +122,7 @@ export class App {
         showHeading(scene, this.sources.scenes);
         this.list.mark(name);
         this.tuning.show(world.settings());
+        this.tuning.offerThreads(world.kind === "native");
         const given = link.colours as Colouring;
         this.setColours(colourings.includes(given) ? given : shown.colours ?? "body");
         this.setDrawn(link.draw ?? picture.usual);
@@ -197,6 +198,7 @@ export class App {
             this.pointer.forget();
             this.player.install(world, this.player.sceneName);
             this.tuning.show(world.settings());
+            this.tuning.offerThreads(world.kind === "native");
             this.pick(null);
         });
     }
@@ -261,7 +263,7 @@ export class App {
         const { world } = this.player;
         this.lastFigures = now;
         this.figures.show(this.player);
-        this.tuning.follow(world.settings());
+        this.tuning.show(world.settings());
         if (!this.inspector.show(world)) this.pick(null);
         if (this.comparison.on) this.card.show();
         showTime(this.player);

@@ -105,6 +105,9 @@ export const nativeChecks = {
         await page.fill("#set-substeps", "3");
         await page.press("#set-substeps", "Enter");
         await until(page, () => window.lendulet.player.world.settings()?.solverSteps === 3);
+        await page.fill("#set-threads", "2");
+        await page.press("#set-threads", "Enter");
+        await until(page, () => window.lendulet.player.world.settings()?.workers === 2);
         const at = await page.evaluate(() => window.lendulet.stage.project(window.lendulet.player.position(21)));
         await page.mouse.click(...at);
         await until(page, () => document.getElementById("body-numbers").textContent.includes("kg"));
