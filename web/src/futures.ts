@@ -16,8 +16,9 @@ export class Futures {
     }
     // After bodies came or went in either; `box`: of what moves in the player's own world.
     rebuild(otherScene: boolean, box: () => THREE.Box3): void {
-        const { twin } = this.player, { group } = this.bodies, was = group.visible;
-        if (twin) this.bodies.build(twin.shapes(), !was);
+        const { twin, world } = this.player, { group } = this.bodies, was = group.visible;
+        // Over a stream its shapes are still to come: until then they are the world's.
+        if (twin) this.bodies.build(twin.shapes().bodies < 0 ? world.shapes() : twin.shapes(), !was);
         if (twin && !was) this.place(box());
         group.visible = twin !== null;
         // Both futures are in the picture, and the one that is left again.
