@@ -26,7 +26,8 @@ const server = await serve(resolve(folder));
 const browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
     args: ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
-        "--disable-component-update", "--disable-sync"],
+        "--disable-component-update", "--disable-sync",
+        "--disable-gpu-watchdog"], // where the machine is busy, drawing in software may stand for a while
 });
 const native = JSON.parse(readFileSync(join(folder, "native-hashes.json"), "utf8"));
 if (images) mkdirSync(images, { recursive: true });
