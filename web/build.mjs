@@ -2,7 +2,7 @@
 // MODULES: the folder of lendulet_wasm.wasm and lendulet_explain.wasm.
 // MODULES "-": without an engine of its own, for a native one behind the server.
 import { build } from "esbuild";
-import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -13,10 +13,13 @@ if (!folder) {
 }
 const here = fileURLToPath(new URL(".", import.meta.url));
 mkdirSync(folder, { recursive: true });
+for (const name of readdirSync(folder)) if (name.startsWith("part-")) rmSync(join(folder, name)); // of other builds
 await build({
-    entryPoints: [join(here, "src/main.ts")],
-    outfile: join(folder, "viewer.js"),
+    entryPoints: { viewer: join(here, "src/main.ts") },
+    outdir: folder,
     bundle: true,
+    splitting: true, // what only WebGPU needs is loaded where there is WebGPU
+    chunkNames: "part-[hash]",
     minify: true,
     format: "esm",
     target: "es2022",

@@ -51,7 +51,9 @@ struct RawOptions {
 };
 
 void add_run_options(CLI::App& command, RunOptions& options, RawOptions& raw) {
-    command.add_option("SCENE", options.scene, "a built-in scene (see `lendulet scenes`), or a .gltf or .glb file")
+    command
+        .add_option("SCENE", options.scene,
+                    "a built-in scene (see `lendulet scenes`), a .gltf or .glb file, or a repro file of the viewer")
         ->required();
     command.add_option("--seconds", raw.seconds, "how long to simulate, s (default 10)")->type_name("S");
     command.add_option("--dt", raw.dt, "the step, s, such as 0.01 or 1/60 (default 1/60)")->type_name("D");
@@ -158,7 +160,8 @@ void finish_verify_options(const std::string& cases, const std::string& quality,
 }
 
 void add_view_options(CLI::App& command, ViewOptions& options, std::string& give_up) {
-    command.add_option("SCENE", options.scene, "a built-in scene, a .gltf or .glb file, or a recording")->required();
+    command.add_option("SCENE", options.scene, "a built-in scene, a .gltf or .glb file, a recording or a repro file")
+        ->required();
     command.add_option("--port", options.port, "where to serve, 0: any (default 8080)")
         ->type_name("N")
         ->check(CLI::Range(0, 65535));

@@ -1,17 +1,19 @@
 // The commands of the program. Each returns the exit code: 0, or 2 after one sentence about bad input on stderr; verify
-// also 1.
+// and the run of a repro file also 1.
 #pragma once
 
 #include <string>
 #include <string_view>
 
+#include "io/summary.h"
 #include "lendulet/lendulet.h"
+#include "scenes/scene.h"
 #include "verify/verify.h"
 
 namespace lendulet::cli {
 
 struct RunOptions {
-    std::string scene;  // a built-in scene's name, or a .gltf or .glb file
+    std::string scene;  // a built-in scene's name, a .gltf or .glb file, or a repro file
     double seconds = 10.0;
     double dt = 1.0 / 60.0;  // s
     WorldConfig world;       // where an option was given; see `given`
@@ -30,7 +32,7 @@ struct VerifyOptions {
 };
 
 struct ViewOptions {
-    std::string scene;  // a built-in scene's name, a .gltf or .glb file, or a recording
+    std::string scene;  // a built-in scene's name, a .gltf or .glb file, a recording or a repro file
     std::string page;   // folder; empty: the one that was built beside the program
     int port = 8080;
     bool any_port = false;  // another one where that is taken
@@ -38,10 +40,17 @@ struct ViewOptions {
     double give_up = 0.0;  // s without a visitor after which it ends; 0: never
 };
 
-// Whether a name is that of a glTF file.
+// Whether a name is that of a glTF file, or of a repro file.
 bool is_gltf(const std::string& name);
+bool is_repro(const std::string& name);
+
+// A built-in scene or a glTF file. What the command line says wins over what the scene chose.
+Result<Scene> open_scene(const std::string& name, const RunOptions& options);
+// The JSON, if asked for, and the page for people, unless standard output is the JSON's.
+Status report(const RunSummary& summary, const RunOptions& options);
 
 int run(const RunOptions& options);
+int replay(const RunOptions& options);  // of a repro file; 1 where its bits are not those that were saved
 int view(const ViewOptions& options);
 int verify(const VerifyOptions& options);  // 1 where a figure is outside its tolerance
 int info(const std::string& file);

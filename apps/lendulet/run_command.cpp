@@ -43,11 +43,6 @@ Configure configuration(const RunOptions& options) {
     };
 }
 
-Result<Scene> open_scene(const RunOptions& options) {
-    if (is_gltf(options.scene)) return load_gltf(options.scene, configuration(options));
-    return build_scene(options.scene, configuration(options));
-}
-
 // Files are opened before the simulation, so that a wrong name does not cost a long run.
 Status check_writable(const std::string& path) {
     if (path.empty() || path == "-") return {};
@@ -73,7 +68,8 @@ Status simulate(Scene& scene, const RunOptions& options, RunObserver& observer, 
     return {};
 }
 
-// The JSON, if asked for, and the page for people, unless standard output is the JSON's.
+}  // namespace
+
 Status report(const RunSummary& summary, const RunOptions& options) {
     if (!options.quiet) {
         for (const std::string& sentence : summary.warnings) {
@@ -95,12 +91,16 @@ Status report(const RunSummary& summary, const RunOptions& options) {
     return {};
 }
 
-}  // namespace
-
 bool is_gltf(const std::string& name) { return ends_with(name, ".gltf") || ends_with(name, ".glb"); }
+bool is_repro(const std::string& name) { return ends_with(name, ".json"); }
+
+Result<Scene> open_scene(const std::string& name, const RunOptions& options) {
+    return is_gltf(name) ? load_gltf(name, configuration(options)) : build_scene(name, configuration(options));
+}
 
 int run(const RunOptions& options) {
-    Result<Scene> opened = open_scene(options);
+    if (is_repro(options.scene)) return replay(options);
+    Result<Scene> opened = open_scene(options.scene, options);
     if (!opened.ok()) return fail(opened.error().message);
     Scene& scene = opened.value();
     Status writable = check_writable(options.json);

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "apps/lendulet/commands.h"
+#include "apps/lendulet/view/repro.h"
 #include "apps/lendulet/view/server.h"
 #include "io/file.h"
 #include "io/gltf.h"
@@ -40,11 +41,11 @@ std::string meta(const char* name, const std::string& content) {
 // A file that is no glTF and looks like a recording; empty where the scene is none.
 Result<std::string> read_recording(const std::string& scene) {
     std::error_code error;
-    if (is_gltf(scene) || !std::filesystem::is_regular_file(scene, error)) return std::string();
+    if (is_gltf(scene) || is_repro(scene) || !std::filesystem::is_regular_file(scene, error)) return std::string();
     Result<std::string> bytes = read_file(scene);
     if (!bytes.ok()) return bytes;
     if (!is_recording(bytes.value()))
-        return Error{ErrorCode::parse, printable(scene) + ": neither a glTF file nor a recording"};
+        return Error{ErrorCode::parse, printable(scene) + ": neither a glTF file nor a recording nor a repro file"};
     return bytes;
 }
 
@@ -77,20 +78,31 @@ int view(const ViewOptions& options) {
     if (!recording.ok()) return fail(recording.error().message);
     server.recording = std::move(recording).value();
 
-    const OpenScene open = [&options](const std::string& name) -> Result<Scene> {
+    std::string shown = options.scene;
+    if (is_repro(options.scene)) {
+        Result<Repro> repro = read_repro(options.scene);
+        if (!repro.ok()) return fail(repro.error().message);
+        shown = repro.value().scene;
+    }
+
+    const OpenScene open = [&options, &shown](const std::string& name) -> Result<Scene> {
         const Configure configure = [&options](WorldBuilder& builder) { builder.workers(options.threads); };
         if (!name.empty()) return build_scene(name, configure);
         if (is_gltf(options.scene)) return load_gltf(options.scene, configure);
-        return build_scene(options.scene, configure);
+        return build_scene(shown, configure);
     };
     if (server.recording.empty()) {
         // A wrong name is said here and not in the page.
         Result<Scene> scene = open("");
         if (!scene.ok()) return fail(scene.error().message);
         if (is_gltf(options.scene)) server.files = drawn_files(options.scene);
-        server.head = meta("lendulet-stream", is_gltf(options.scene) ? "" : options.scene) +
+        server.head = meta("lendulet-stream", is_gltf(options.scene) ? "" : shown) +
                       meta("lendulet-title", std::filesystem::path(options.scene).filename().string());
         if (!server.files.empty()) server.head += meta("lendulet-gltf", "gltf");
+        if (is_repro(options.scene)) {
+            server.files["repro"] = options.scene;
+            server.head += meta("lendulet-repro", std::filesystem::path(options.scene).filename().string());
+        }
     } else {
         server.head = meta("lendulet-recording", std::filesystem::path(options.scene).filename().string());
     }

@@ -2,7 +2,7 @@
 #include "lendulet/lendulet_c.h"
 
 // What the page reads without asking for offsets.
-static_assert(sizeof(lendulet_pose) == 32 && sizeof(lendulet_contact) == 32);
+static_assert(sizeof(lendulet_pose) == 32 && sizeof(lendulet_contact) == 48);
 static_assert(sizeof(lendulet_collider) == 68 && offsetof(lendulet_collider, size) == 16 &&
               offsetof(lendulet_collider, position) == 36);
 static_assert(sizeof(lendulet_hit) == 40 && offsetof(lendulet_hit, point) == 12);

@@ -176,21 +176,4 @@ lendulet_result lendulet_read_statistics(const lendulet_world* world, lendulet_s
     return 0;
 }
 
-lendulet_result lendulet_read_contacts(lendulet_world* world, const lendulet_contact** out) {
-    if (!world || !out) return refuse_null("read_contacts");
-    const World& w = world->scene.world;
-    world->contacts.clear();
-    for (int i = 0; i < w.contact_count(); ++i) {
-        Contact c = w.contact(i);
-        for (int j = 0; j < c.point_count; ++j) {
-            const ContactPoint& p = c.points[j];
-            lendulet_contact point{{}, p.separation, {}, p.normal_impulse};
-            put(point.position, p.position);
-            put(point.normal, c.normal);
-            world->contacts.push_back(point);
-        }
-    }
-    return give(world->contacts, out);
-}
-
 }  // extern "C"

@@ -1,4 +1,4 @@
-// The C interface: joints, boxes of the broad phase, islands and colours, momenta.
+// The C interface: contacts, joints, boxes of the broad phase, islands and colours, momenta.
 #include "bindings/c/handle.h"
 
 using namespace lendulet;
@@ -64,6 +64,27 @@ lendulet_motion motion_of(const World& world, BodyId id) {
 }  // namespace
 
 extern "C" {
+
+lendulet_result lendulet_read_contacts(lendulet_world* world, const lendulet_contact** out) {
+    if (!world || !out) return refuse_null("read_contacts");
+    const World& w = world->scene.world;
+    const std::vector<int32_t> place = places(w);
+    world->contacts.clear();
+    for (int i = 0; i < w.contact_count(); ++i) {
+        const Contact c = w.contact(i);
+        lendulet_contact point{};
+        put(point.normal, c.normal);
+        point.body_a = place[c.body_a.index], point.body_b = place[c.body_b.index];
+        point.manifold = i;
+        point.friction_impulse = length(c.friction_impulse);
+        for (int j = 0; j < c.point_count; ++j) {
+            put(point.position, c.points[j].position);
+            point.separation = c.points[j].separation, point.normal_impulse = c.points[j].normal_impulse;
+            world->contacts.push_back(point);
+        }
+    }
+    return give(world->contacts, out);
+}
 
 lendulet_result lendulet_read_joints(lendulet_world* world, const lendulet_joint_state** out) {
     if (!world || !out) return refuse_null("read_joints");

@@ -244,9 +244,12 @@ lendulet_result lendulet_read_statistics(const lendulet_world* world, lendulet_s
 
 typedef struct lendulet_contact {
     float position[3];
-    float separation;     /* m, negative: overlap */
-    float normal[3];      /* unit, from A to B */
-    float normal_impulse; /* of the last substep, N s */
+    float separation;       /* m, negative: overlap */
+    float normal[3];        /* unit, from A to B */
+    float normal_impulse;   /* of the last substep, N s */
+    int32_t body_a, body_b; /* indices into the list of bodies */
+    int32_t manifold;       /* points of the same number have the same pair of colliders and the same normal */
+    float friction_impulse; /* its length, of the whole manifold, N s */
 } lendulet_contact;
 
 /* Every contact point of the last step. */

@@ -135,5 +135,69 @@ TEST(Program, HelpVersionAndScenes) {
     EXPECT_NE(scenes.out.find("box_pile:"), std::string::npos);
 }
 
+// The viewer's page writes such files; web/test checks that it gives the same bits as the program.
+TEST(Run, ReproFileHasTheBitsThatWereSaved) {
+    const std::string file = scratch("repro.json");
+    Json repro{
+        {"lendulet", "repro"},
+        {"version", 1},
+        {"scene", "stack:3"},
+        {"steps", 90},
+        {"hash", "0000000000000000"},
+        {"deeds",
+         {{{"step", 0}, {"command", {{"do", "set"}, {"friction", 0.25}, {"broadPhase", 3}}}},
+          {{"step", 10},
+           {"command",
+            {{"do", "sphere"}, {"radius", 0.3}, {"at", {-4, 2, 0}}, {"velocity", {12, 0, 0}}, {"density", 600}}}},
+          {{"step", 30}, {"command", {{"do", "grab"}, {"body", 3}, {"point", {0, 2.5, 0}}}}},
+          {{"step", 31}, {"command", {{"do", "drag"}, {"target", {0, 5, 0}}}}},
+          {{"step", 60}, {"command", {{"do", "release"}}}},
+          {{"step", 90},
+           {"command",
+            {{"do", "shape"},
+             {"type", 6},
+             {"size", {0.4, 0.3}},
+             {"rounding", 0},
+             {"at", {0, 6, 0}},
+             {"velocity", {0, 0, 0}},
+             {"density", 300}}}}}}};
+    auto write = [&] { std::ofstream(file) << repro.dump(); };
+    write();
+    Outcome other = lendulet({"run", file, "--quiet", "--json", "-"});
+    EXPECT_EQ(other.exit_code, 1);
+    EXPECT_NE(other.err.find("not the bits that were saved"), std::string::npos) << other.err;
+    const Json summary = Json::parse(other.out);
+    EXPECT_EQ(summary["steps"], 90);
+    EXPECT_EQ(summary["bodies"].size(), 6u);
+    repro["hash"] = summary["hash"];
+    write();
+    for (const std::vector<std::string>& options :
+         {std::vector<std::string>{}, {"--threads", "3", "--width", "1"}, {"--broad-phase", "sweep-1"}}) {
+        std::vector<std::string> arguments{"run", file};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        Outcome same = lendulet(arguments);
+        EXPECT_EQ(same.exit_code, 0) << same.err;
+        EXPECT_NE(same.err.find("The same bits"), std::string::npos) << same.err;
+    }
+    // What is none, and deeds that cannot be done.
+    const Json whole = repro;
+    auto refused = [&](const char* part) {
+        write();
+        expect_refused({"run", file}, part);
+        repro = whole;
+    };
+    repro["lendulet"] = "recording", refused("no repro file");
+    repro["version"] = 2, refused("version");
+    repro["steps"] = -1, refused("steps");
+    repro["scene"] = "no_such_scene", refused("no_such_scene");
+    repro["gltf"] = "AAAA", refused("glTF");
+    repro["deeds"][1]["step"] = 95, refused("not in order");
+    repro["deeds"][0]["command"]["do"] = "explode", refused("explode");
+    repro["deeds"] = 3, refused("deeds");
+    expect_refused({"run", file, "--record", scratch("no.rec")}, "--record");
+    std::ofstream(file) << "{";
+    expect_refused({"run", file}, "not JSON");
+}
+
 }  // namespace
 }  // namespace lendulet::test

@@ -93,6 +93,30 @@ TEST(Session, GoesBackForksAndTunes) {
     EXPECT_NE(client.ask({{"forget", {1}}, {"go", 1}}).error(), "") << "forgotten after it, but not going back twice";
 }
 
+// One fork for each broad phase: they keep the bits of the world, with a capsule that falls into all of them.
+TEST(Session, ForksForEachBroadPhase) {
+    Client client;
+    client.ask({{"open", "box_pile:40"}, {"steps", 20}});
+    const Json capsule{{"do", "shape"},   {"type", LENDULET_CAPSULE}, {"size", {0.3, 0.2}}, {"rounding", 0},
+                       {"at", {0, 8, 0}}, {"velocity", {0, -5, 0}},   {"density", 400}};
+    int forks = 0;
+    for (; lendulet_choice_name(LENDULET_BROAD_PHASES, forks); ++forks) {
+        const int number = forks + 1;
+        ASSERT_LE(number, most_forks);
+        EXPECT_EQ(client.ask({{"do", {{{"do", "fork"}, {"to", number}}}}}).error(), "");
+        const Json set{{"do", "set"}, {"broadPhase", forks}};
+        EXPECT_EQ(client.ask({{"world", number}, {"do", {set, capsule}}, {"steps", 60}}).error(), "");
+    }
+    EXPECT_EQ(forks, 8);
+    Answer own = client.ask({{"do", {capsule}}, {"steps", 60}, {"want", {"hash", "poses"}}});
+    EXPECT_EQ(own.error(), "");
+    EXPECT_EQ(own.sections[Section::poses].size(), 46 * sizeof(lendulet_pose));
+    for (int i = 1; i <= forks; ++i)
+        EXPECT_EQ(client.ask({{"world", i}, {"want", {"hash"}}}).state().hash, own.state().hash) << i;
+    client.ask({{"do", {{{"do", "join"}, {"to", 3}}}}});
+    EXPECT_NE(client.ask({{"world", 3}, {"steps", 1}}).error(), "");
+}
+
 TEST(Session, RefusesWithASentence) {
     Client client;
     EXPECT_NE(client.ask({{"steps", 1}}).error().find("open a scene"), std::string::npos);
@@ -103,7 +127,11 @@ TEST(Session, RefusesWithASentence) {
                           {{"steps", 1.5}},
                           {{"steps", "many"}},
                           {{"go", 99}},
-                          {{"world", 2}},
+                          {{"world", 2}, {"steps", 1}},
+                          {{"world", 10}},
+                          {{"do", {{{"do", "fork"}, {"to", 0}}}}},
+                          {{"do", {{{"do", "shape"}, {"type", 7}, {"size", {1}}, {"rounding", 0}}}}},
+                          {{"do", {{{"do", "shape"}, {"type", 1}, {"size", {1, 1, 1, 1, 1}}, {"rounding", 0}}}}},
                           {{"world", 1}, {"steps", 1}},
                           {{"do", "sphere"}},
                           {{"do", {1}}},

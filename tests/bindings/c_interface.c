@@ -84,6 +84,8 @@ const char* test_bodies_and_figures(void) {
     EXPECT(run(world, 60));
     points = lendulet_read_contacts(world, &contacts);
     EXPECT(points == 1 && fabsf(contacts[0].position[1]) < 0.02f && fabsf(fabsf(contacts[0].normal[1]) - 1.0f) < 1e-3f);
+    EXPECT(contacts[0].body_a + contacts[0].body_b == 1 && contacts[0].manifold == 0 &&
+           contacts[0].normal_impulse > 0.0f);
     EXPECT(lendulet_read_body(world, ball, &state) == 0);
     EXPECT(fabsf(state.mass - 523.6f) < 0.1f && state.type == LENDULET_DYNAMIC && state.name[0] == 0);
     EXPECT(fabsf(state.position[1] - 0.5f) < 0.01f);

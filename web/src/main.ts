@@ -1,5 +1,5 @@
 // Loads the engine, finds out what this page is to show, and starts the viewer. `?shadows=0` leaves shadows out,
-// `?ao=0` ambient occlusion, for machines that draw in software.
+// `?ao=0` ambient occlusion, for machines that draw in software; `?draw=webgl` or `webgpu` says what draws.
 import { App } from "./app";
 import { Engine } from "./engine/engine";
 import type { ExplainMode } from "./explain/mode";
@@ -8,6 +8,7 @@ import { Sources } from "./sources";
 import { connect } from "./ui/controls";
 import { element } from "./ui/dom";
 import { connectExplain } from "./ui/explain";
+import { chooseDrawer } from "./view/drawer";
 import { Stage } from "./view/stage";
 
 declare global {
@@ -26,9 +27,12 @@ async function main(): Promise<void> {
     const sources = await Sources.find(await loadEngine());
     const options = new URLSearchParams(location.search), shadows = Number(options.get("shadows") ?? 2048);
     const occlusion = shadows > 0 && options.get("ao") !== "0";
-    const stage = new Stage(element<HTMLCanvasElement>("canvas"), shadows, occlusion);
+    const canvas = element<HTMLCanvasElement>("canvas");
+    const make = await chooseDrawer(canvas, shadows > 0, options.get("draw"));
+    const stage = new Stage(canvas, shadows, occlusion, make);
     const app = new App(sources, stage);
-    sources.lost = (sentence) => app.say(sentence);
+    stage.lost = (sentence) => app.say(sentence, true);
+    sources.lost = (sentence) => app.lost(sentence);
     const address = location.hash; // the app writes its own
     app.start();
     while (!app.player.world) await new Promise((done) => setTimeout(done, 10));

@@ -1,5 +1,6 @@
 // Runs a world: asks for steps at the pace of the clock, keeps the last two states for drawing between them, the past,
 // and what was done by hand. A fork runs beside it, step for step.
+import { type Deed, note, type Script, tidy } from "./deeds";
 import { type Command, poseStride, type World } from "./engine/types";
 import { History, type Moment } from "./history";
 
@@ -7,10 +8,11 @@ const historyBudget = 96 * 1024 * 1024; // bytes
 const frameBudget = 22;                 // ms of steps in a frame; what is left over is lost: the picture slows down
 const mostSteps = 4;                    // of one question to a stream
 
-// Something that was done by hand, before the step of this number.
-export interface Deed {
-    step: number;
-    command: Command;
+// Worlds that go along with the player's, step for step and change for change.
+export interface Companions {
+    run(steps: number): void;
+    change(command: Command): void;
+    jumped(): void; // the world is another one, or elsewhere in its past
 }
 
 export class Player {
@@ -26,11 +28,14 @@ export class Player {
     stepTime = 0;    // ms a step took, smoothed
     deeds: Deed[] = [];
     stepped: (poses: Float32Array) => void = () => undefined; // after every step
+    companions: Companions | null = null;
     readonly history = new History(historyBudget, (kept) => this.world.forget(kept));
     private left = 0; // s not yet stepped
     private shown: number | null = null;
     private asked = 0; // when the last steps were asked for, ms
     private toDo: Deed[] = []; // of a repro file, in order of steps
+    private end: Script["end"]; // of the same file
+    private twinToDo: Deed[] = []; // what was done the first time
 
     // `changed`: bodies came or went, or all are those of another scene; `refused`: a sentence.
     constructor(
@@ -38,13 +43,14 @@ export class Player {
         private readonly refused: (sentence: string) => void,
     ) {}
 
-    // The world is the player's from now on. `toDo`: what is to be done in it, as it was once done by hand.
-    install(world: World, sceneName: string, toDo: Deed[] = []): void {
+    // The world is the player's from now on.
+    install(world: World, sceneName: string, script: Script = { deeds: [] }): void {
         this.leaveTwin();
         if (this.world) this.world.destroy();
         this.world = world;
         this.sceneName = sceneName;
-        this.toDo = [...toDo];
+        this.toDo = [...script.deeds];
+        this.end = script.end;
         this.deeds = [];
         this.history.clear();
         this.shown = null;
@@ -60,6 +66,12 @@ export class Player {
         this.before = this.now.slice();
         this.remember();
         this.changed(true);
+        this.perform(); // what comes before the first step
+        this.companions?.jumped();
+    }
+    // What was done and what is still to be done.
+    get allDeeds(): Deed[] {
+        return [...this.deeds, ...this.toDo];
     }
     // Whether the run is no longer the scene's own.
     get touched(): boolean {
@@ -97,11 +109,16 @@ export class Player {
         this.share = 1;
     }
     private ask(steps: number): void {
+        // Not beyond what is still to be done.
+        const count = this.world.stepCount;
+        for (const next of [this.toDo[0], this.twinToDo[0], this.end])
+            if (next && next.step > count) steps = Math.min(steps, next.step - count);
         this.left -= steps * this.world.stepSize;
-        while (this.toDo.length > 0 && this.toDo[0].step <= this.world.stepCount)
-            this.perform(this.toDo.shift()!.command);
+        while (this.twin && (this.twinToDo[0]?.step ?? Infinity) <= count)
+            this.twin.change(this.twinToDo.shift()!.command);
         this.asked = performance.now();
         this.twin?.run(steps);
+        this.companions?.run(steps);
         this.world.run(steps);
     }
     private arrived(steps: number): void {
@@ -118,6 +135,17 @@ export class Player {
             this.stepped(this.now);
         }
         if (this.now.length !== count) this.changed(false);
+        this.perform();
+    }
+    // What a repro file or an address has done by now.
+    private perform(): void {
+        while ((this.toDo[0]?.step ?? Infinity) <= this.world.stepCount) this.act(this.toDo.shift()!.command);
+        if (!this.end || this.end.step > this.world.stepCount) return;
+        void this.world.hash; // a stream sends it to who asks
+        if (this.world.busy || this.toDo.length > 0) return;
+        const { step, reached } = this.end;
+        this.end = undefined;
+        if (step === this.world.stepCount) reached();
     }
     private readPoses(): void {
         const poses = this.world.poses();
@@ -167,11 +195,14 @@ export class Player {
         this.shown = null;
         this.left = 0;
         this.deeds = this.deeds.filter((deed) => deed.step < moment.step);
+        this.toDo = [];
+        this.end = undefined;
         // Where results depended on other settings then, these come first.
         const { settings } = moment.kept;
         if (settings && JSON.stringify(settings) !== JSON.stringify(this.world.settings()))
             this.world.change({ do: "set", ...settings });
         this.world.go(moment.kept);
+        this.companions?.jumped();
     }
     play(on: boolean): void {
         if (on) this.resume();
@@ -183,25 +214,33 @@ export class Player {
 
     change(command: Command): void {
         this.resume();
-        this.perform(command);
+        this.act(tidy(command));
     }
-    private perform(command: Command): void {
+    private act(command: Command): void {
+        const step = this.world.stepCount + this.world.ahead;
         this.world.change(command);
-        this.deeds.push({ step: this.world.stepCount, command });
+        note(this.deeds, { step, command });
+        this.companions?.change(command);
     }
 
     // --- two futures
 
-    // A second world from here on, left alone while this one is played with.
+    // A second world from here on, left alone while this one is played with. From the past on, what was done by hand
+    // the first time is done in it again: it is what happened, beside what may.
     fork(): void {
+        const moment = this.moment, later = moment ? this.deeds.filter((deed) => deed.step >= moment.step) : [];
         this.resume();
         this.leaveTwin();
-        this.twin = this.world.fork();
+        this.twin = this.world.fork(1);
         if (!this.twin) return this.refused("A recording has but one future.");
+        this.twinToDo = later;
         this.twin.failed = this.refused;
         this.twinNow = this.now.slice();
         this.twin.arrived = () => {
-            if (this.twin) this.twinNow = this.twin.poses().slice();
+            if (!this.twin) return;
+            const count = this.twinNow.length;
+            this.twinNow = this.twin.poses().slice();
+            if (this.twinNow.length !== count) this.changed(false);
         };
         this.changed(false);
     }
@@ -210,6 +249,7 @@ export class Player {
         this.twin.arrived = () => undefined;
         this.twin.destroy();
         this.twin = null;
+        this.twinToDo = [];
         this.changed(false);
     }
     // The greatest distance between the same body in both, m.

@@ -2,31 +2,26 @@
 // camera. Lets go in motion throw the body.
 import * as THREE from "three";
 import { type Hit, type Vec3 } from "./engine/types";
+import type { Picture } from "./picture";
 import type { Player } from "./player";
-import type { Bodies } from "./view/bodies";
-import { GripLine } from "./view/marks";
-import type { Stage } from "./view/stage";
 
 const clickReach = 6; // pixels; a pointer that moves farther drags
 
 export const vector = (v: THREE.Vector3): Vec3 => [v.x, v.y, v.z];
 
 export class Pointer {
-    readonly grip = new GripLine();
     private held: number | null = null; // pointer id
     private readonly target = new THREE.Vector3();
     private readonly plane = new THREE.Plane();
     private down: { x: number; y: number; body: number | null } | null = null;
 
     constructor(
-        private readonly stage: Stage,
+        private readonly picture: Picture,
         private readonly player: Player,
-        private readonly bodies: Bodies,
         private readonly pick: (body: number | null) => void,
         private readonly guarded: (action: () => void) => void,
     ) {
-        const canvas = stage.canvas;
-        stage.scene.add(this.grip.line);
+        const { canvas } = picture.stage;
         // Before the camera's own listeners, so that a drag of a body does not turn the camera.
         canvas.addEventListener("pointerdown", (event) => this.press(event), { capture: true });
         canvas.addEventListener("pointermove", (event) => this.guarded(() => this.move(event)));
@@ -36,11 +31,11 @@ export class Pointer {
 
     // What the ray through a point of the page meets in the present.
     hit(x: number, y: number): Hit | null {
-        const ray = this.stage.ray(x, y);
-        const far = ray.direction.clone().multiplyScalar(this.stage.far);
+        const ray = this.picture.stage.ray(x, y);
+        const far = ray.direction.clone().multiplyScalar(this.picture.stage.far);
         const hit = this.player.world.castRay(vector(ray.origin), vector(far));
         if (hit !== undefined) return hit;
-        const seen = this.bodies.hit(ray);
+        const seen = this.picture.bodies.hit(ray);
         return seen && { body: seen.body, point: vector(seen.point) };
     }
 
@@ -48,12 +43,12 @@ export class Pointer {
         if (event.button !== 0 || this.held !== null || !event.isPrimary) return;
         const hit = this.player.moment ? null : this.hit(event.clientX, event.clientY);
         this.down = { x: event.clientX, y: event.clientY, body: hit?.body ?? null };
-        if (!hit || !this.bodies.isDynamic(hit.body)) return;
+        if (!hit || !this.picture.bodies.isDynamic(hit.body)) return;
         event.stopImmediatePropagation();
-        this.stage.canvas.setPointerCapture(event.pointerId);
+        this.picture.stage.canvas.setPointerCapture(event.pointerId);
         this.held = event.pointerId;
         this.target.set(...hit.point);
-        const facing = this.stage.camera.getWorldDirection(new THREE.Vector3());
+        const facing = this.picture.stage.camera.getWorldDirection(new THREE.Vector3());
         this.plane.setFromNormalAndCoplanarPoint(facing, this.target);
     }
     private move(event: PointerEvent): void {
@@ -64,17 +59,17 @@ export class Pointer {
             const body = this.down.body;
             this.player.change({ do: "grab", body, point: vector(this.target) });
             this.grabbing = true;
-            this.stage.canvas.classList.add("grabbing");
+            this.picture.stage.canvas.classList.add("grabbing");
             this.pick(body);
         }
-        const ray = this.stage.ray(event.clientX, event.clientY);
+        const ray = this.picture.stage.ray(event.clientX, event.clientY);
         if (ray.intersectPlane(this.plane, this.target))
             this.player.change({ do: "drag", target: vector(this.target) });
     }
     private grabbing = false;
     // Whether the line of the grip is drawn, or was a moment ago.
     get active(): boolean {
-        return this.grabbing || this.grip.line.visible;
+        return this.grabbing || this.picture.grip.line.visible;
     }
     private lift(event: PointerEvent): void {
         const still = this.down && Math.hypot(event.clientX - this.down.x, event.clientY - this.down.y) <= clickReach;
@@ -90,11 +85,11 @@ export class Pointer {
         this.grabbing = false;
         this.held = null;
         this.down = null;
-        this.stage.canvas.classList.remove("grabbing");
+        this.picture.stage.canvas.classList.remove("grabbing");
     }
 
     // Called once a frame.
     draw(): void {
-        this.grip.show(this.grabbing ? this.player.world.grabbed() : null, this.target);
+        this.picture.grip.show(this.grabbing ? this.player.world.grabbed() : null, this.target);
     }
 }

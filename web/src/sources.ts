@@ -1,5 +1,6 @@
 // Where worlds come from: the engine in the page, a native engine behind this very server, or a file that it serves.
 import type { Engine } from "./engine/engine";
+import { fileBytes } from "./engine/module";
 import { RecordingWorld } from "./engine/recording";
 import { type Catalogue, Connection, StreamWorld } from "./engine/stream";
 import { type Explain, explainInPage } from "./explain/sequence";
@@ -15,6 +16,8 @@ export class Sources implements Catalogue {
     connection: Connection | null = null;
     // What the server was started with.
     given: { name: string; make: () => World | Promise<World> } | null = null;
+    // A repro file that it was started with.
+    repro: { name: string; bytes: Uint8Array } | null = null;
     lost: (sentence: string) => void = () => undefined;
 
     private constructor(readonly engine: Engine | null) {}
@@ -26,9 +29,10 @@ export class Sources implements Catalogue {
         const sources = new Sources(engine);
         if (engine) sources.take(engine);
         if (meta("lendulet-stream") !== null) await sources.connect();
-        const recording = meta("lendulet-recording");
+        const recording = meta("lendulet-recording"), repro = meta("lendulet-repro");
+        if (repro !== null) sources.repro = { name: repro, bytes: await fileBytes("repro") };
         if (recording !== null) {
-            const bytes = new Uint8Array(await (await fetch("recording")).arrayBuffer());
+            const bytes = await fileBytes("recording");
             sources.given = { name: recording, make: () => new RecordingWorld(bytes) };
         }
         return sources;
@@ -48,13 +52,15 @@ export class Sources implements Catalogue {
             this.native = false;
             this.connection = null;
             this.lost(this.engine
-                ? "The native engine is gone; scenes that you open now run in the page."
+                ? "The native engine is gone. R runs this scene in the page, as do those that you open now."
                 : "The native engine is gone: start it and load the page again.");
         };
         this.connection = connection;
         this.native = true;
         const name = meta("lendulet-stream") || meta("lendulet-title") || "scene";
-        this.given = { name, make: () => this.openNative("") };
+        // The file of the command line is the native engine's alone; a scene is known to the page too.
+        const isScene = Boolean(meta("lendulet-stream"));
+        this.given = { name, make: () => (this.native || !isScene ? this.openNative("") : this.open(name)) };
     }
 
     // Null: nobody here can explain.

@@ -192,7 +192,7 @@ export const checks = {
             const page = await open({ viewport: { width: 680, height: 460 }, colorScheme: scheme },
                 `?shadows=1024${keeps ? "" : "&ao=0"}#scene=${scene}&colours=${colours}&paused=1`);
             await run(page, scene, steps);
-            if (fit) await page.evaluate(() => window.lendulet.lookAtAll());
+            if (fit) await page.evaluate(() => window.lendulet.picture.lookAtAll());
             await frames(page, 1);
             const png = await page.screenshot({ clip: await page.locator("main").boundingBox() });
             const { colours: many, commonest } = await look(page, png);
@@ -220,14 +220,19 @@ export const checks = {
         };
         await show("levels", "box_pile:200", 150, () => {
             window.lendulet.change({ do: "set", broadPhase: 6 });
-            window.lendulet.setStructure({ boxes: "levels" });
+            window.lendulet.setDrawn(["levels"]);
         }, 1);
         await show("futures", "large_pyramid:12", 30, () => {
             const app = window.lendulet;
             app.player.fork();
-            app.shoot(...app.stage.project([0, 4, 0]));
+            app.hand.shoot(...app.stage.project([0, 4, 0]));
             document.getElementById("message").hidden = true;
         }, 70);
-        await show("joints", "ragdolls:6", 60, () => window.lendulet.setStructure({ joints: true }), 1);
+        await show("phases", "box_pile:200", 60, () => window.lendulet.compare(true), 60);
+        await show("manifolds", "large_pyramid:4", 20, () => {
+            window.lendulet.setDrawn(["manifolds", "centres"]);
+            window.lendulet.setContacts(true);
+        }, 20);
+        await show("joints", "ragdolls:6", 60, () => window.lendulet.setDrawn(["joints"]), 1);
     },
 };

@@ -1,20 +1,23 @@
 // Checks of what is dropped onto the page and saved from it, of settings, forks and the engine's own structures.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
 const wide = { viewport: { width: 1120, height: 420 } }; // both panels are seen
 const until = (page, condition, argument = null) => page.waitForFunction(condition, argument, { polling: 50 });
 
-// Drops a file onto the page, as a hand would.
-async function drop(page, name, bytes) {
-    await page.evaluate(([name, base64]) => {
+// Drops files onto the page, as a hand would: names and bytes in turn.
+async function drop(page, ...files) {
+    const list = [];
+    for (let i = 0; i < files.length; i += 2) list.push([files[i], Buffer.from(files[i + 1]).toString("base64")]);
+    await page.evaluate((list) => {
         const data = new DataTransfer();
-        data.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], name));
+        for (const [name, base64] of list)
+            data.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], name));
         window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true }));
-    }, [name, Buffer.from(bytes).toString("base64")]);
+    }, list);
 }
 const steps = (page, count) => page.evaluate((count) => {
     for (let i = 0; i < count; ++i) window.lendulet.player.step();
@@ -28,7 +31,7 @@ async function saved(page, action) {
 
 export const fileChecks = {
     async "files: glTF is dropped, built and simulated; wrong files are said"({ open }) {
-        const page = await open({}, "?shadows=0#scene=stack:3&paused=1");
+        const page = await open({ acceptDownloads: true }, "?shadows=0#scene=stack:3&paused=1");
         const gltf = readFileSync(new URL("../../scenes/files/playground.gltf", import.meta.url));
         await drop(page, "playground.gltf", gltf);
         await until(page, () => window.lendulet.player.sceneName === "playground.gltf");
@@ -39,19 +42,36 @@ export const fileChecks = {
         assert.ok(built.bodies > 5, `${built.bodies} bodies`);
         const { now } = await steps(page, 60);
         assert.ok(now.every(Number.isFinite));
-        // A file with meshes, its buffer put inside: they are drawn in place of what collides.
+        // A file with meshes, dropped together with its buffer: they are drawn in place of what collides.
         const folder = new URL("../../scenes/files/", import.meta.url);
-        const meshes = JSON.parse(readFileSync(new URL("meshes.gltf", folder), "utf8"));
-        const data = readFileSync(new URL(meshes.buffers[0].uri, folder)).toString("base64");
-        meshes.buffers[0].uri = `data:application/octet-stream;base64,${data}`;
-        await drop(page, "meshes.gltf", JSON.stringify(meshes));
-        await until(page, () => window.lendulet.player.sceneName === "meshes.gltf" && window.lendulet.visuals !== null);
+        const meshes = ["meshes.bin", "meshes.gltf"].flatMap((name) => [name, readFileSync(new URL(name, folder))]);
+        await drop(page, ...meshes.slice(2));
+        await until(page, () => document.getElementById("message").textContent.includes("files beside it"));
+        await drop(page, "other.bin", "x", ...meshes.slice(2));
+        await until(page, () => document.getElementById("message").textContent.includes("meshes.bin, which"));
+        await drop(page, ...meshes);
+        await until(page, () => window.lendulet.player.sceneName === "meshes.gltf");
+        await until(page, () => window.lendulet.picture.visuals !== null);
         assert.ok((await steps(page, 30)).now.every(Number.isFinite));
-        assert.equal(await page.evaluate(() => window.lendulet.visuals.parts.size), 1); // the bowl alone is a mesh
+        // The bowl alone is a mesh.
+        assert.equal(await page.evaluate(() => window.lendulet.picture.visuals.parts.size), 1);
+        // Its repro file holds the file.
+        await page.click("#open-figures");
+        const { hash } = await steps(page, 30);
+        const repro = await saved(page, () => page.click("#save-repro"));
+        await drop(page, "playground.gltf", gltf);
+        await until(page, () => window.lendulet.player.sceneName === "playground.gltf");
+        await drop(page, "repro.json", repro);
+        await until(page, () => window.lendulet.player.sceneName === "meshes.gltf");
+        assert.equal((await steps(page, 60)).hash, hash);
+        await until(page, () => document.getElementById("message").textContent.startsWith("The same bits"));
         await drop(page, "playground.gltf", gltf);
         await until(page, () => window.lendulet.player.sceneName === "playground.gltf");
         for (const [name, bytes, said] of [["broken.gltf", "{\"asset\":", "malformed"], ["old.gltf", "{}", "glTF 2.0"],
-            ["picture.png", "x", "neither"], ["no.json", "{}", "repro"],
+            ["picture.png", "x", "neither"], ["empty.glb", "", "malformed"],
+            ["empty.json", "", "not JSON"], ["null.json", "null", "no repro"],
+            ["odd.json", JSON.stringify({ lendulet: "repro", version: 1, scene: "stack", steps: 1, hash: "",
+                deeds: [{ step: 0, command: { do: "explode" } }] }), "cannot be done"], ["no.json", "{}", "repro"],
             ["cut.rec", "LENDREC\n\x02\x00", "too early"]]) {
             await drop(page, name, bytes);
             await until(page, (said) => document.getElementById("message").textContent.includes(said), said);
@@ -67,11 +87,11 @@ export const fileChecks = {
             const page = await open({ ...wide, acceptDownloads: true }, "?shadows=0#scene=convex_pile:30&paused=1");
             await page.click("#record");
             await steps(page, 20);
-            await page.evaluate(() => window.lendulet.shoot(300, 200));
+            await page.evaluate(() => window.lendulet.hand.shoot(300, 200));
             const { now, hash } = await steps(page, 10);
             const bytes = await saved(page, () => page.click("#record"));
             const file = join(folder, "page.rec");
-            (await import("node:fs")).writeFileSync(file, bytes);
+            writeFileSync(file, bytes);
             const info = execFileSync(program, ["info", file], { encoding: "utf8" });
             assert.match(info, /steps +30 /);
             assert.ok(info.includes(hash), info);
@@ -100,18 +120,23 @@ export const fileChecks = {
         }
     },
 
-    async "files: a repro file and an address make the same run again"({ open }) {
+    async "files: a repro file and an address make the same run again, in the page and by the program"({
+        open, program,
+    }) {
         const page = await open({ ...wide, acceptDownloads: true }, "?shadows=0#scene=wall_ball:4&paused=1");
         await steps(page, 15);
         await page.click("#drop");
         await steps(page, 10);
         await page.evaluate(() => window.lendulet.change({ do: "set", solverSteps: 4 }));
-        const { hash } = await steps(page, 20);
+        await steps(page, 20);
+        await page.selectOption("#shape", "cone");
+        await page.click("#drop"); // after the last step
+        const hash = await page.evaluate(() => window.lendulet.player.world.hash);
         const repro = await saved(page, () => page.click("#save-repro"));
         // The address follows within a second: until both deeds are in it.
         const found = await until(page, () => {
             const deeds = /deeds=([^&]*)/.exec(location.hash)?.[1] ?? "";
-            return atob(deeds.replaceAll("-", "+").replaceAll("_", "/")).includes("solverSteps") && location.href;
+            return atob(deeds.replaceAll("-", "+").replaceAll("_", "/")).includes("shape") && location.href;
         });
         const address = await found.jsonValue();
         await page.evaluate(() => window.lendulet.open("stack:3"));
@@ -119,13 +144,22 @@ export const fileChecks = {
         await until(page, () => window.lendulet.player.sceneName === "wall_ball:4");
         assert.equal((await steps(page, 45)).hash, hash);
         await until(page, () => document.getElementById("message").textContent.startsWith("The same bits"));
+        const folder = mkdtempSync(join(tmpdir(), "lendulet-"));
+        try {
+            const file = join(folder, "again.json");
+            writeFileSync(file, repro);
+            const text = execFileSync(program, ["run", file, "--quiet", "--json", "-"], { encoding: "utf8" });
+            assert.equal(JSON.parse(text).hash, hash);
+        } finally {
+            rmSync(folder, { recursive: true });
+        }
         const other = await open({}, "?shadows=0" + new URL(address).hash + "&paused=1");
-        await steps(other, 45);
+        assert.equal((await steps(other, 45)).hash, hash, "the address makes another run");
         const again = await other.evaluate(() => {
             const { player } = window.lendulet;
             return { deeds: player.deeds.map((d) => [d.step, d.command.do]), bodies: player.now.length / 8 };
         });
-        assert.deepEqual(again.deeds, [[15, "box"], [25, "set"]]);
+        assert.deepEqual(again.deeds, [[15, "box"], [25, "set"], [45, "shape"]]);
     },
 
     async "files: a picture and a film are saved, and show the scene"({ open, look }) {
@@ -176,6 +210,7 @@ export const fileChecks = {
         await page.press("#set-friction", "Enter");
         const tuned = await page.evaluate(() => window.lendulet.player.world.settings());
         assert.equal(tuned.gravity[1], 3);
+        assert.ok(await page.isDisabled("#set-threads"), "the page has one thread");
         assert.equal(tuned.broadPhase, 2);
         assert.ok(Math.abs(tuned.friction - 0.1) < 1e-6);
         const risen = await steps(page, 60);
@@ -219,7 +254,7 @@ export const fileChecks = {
         await steps(page, 70);
         const lines = () => page.evaluate(() => {
             window.lendulet.frame();
-            const { children } = window.lendulet.structure.group;
+            const { children } = window.lendulet.picture.structure.group;
             return children.map((mesh) => (mesh.visible ? mesh.geometry.drawRange.count : 0));
         });
         await page.selectOption("#set-broad-phase", { label: "rtree-omt" });

@@ -1,6 +1,6 @@
 // Checks of the native stream: `lendulet view` and the page that it serves.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
+import { spawn, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { request } from "node:http";
 import { connect } from "node:net";
@@ -21,6 +21,7 @@ export function startNative(program, folder, scene, ...options) {
             if (found) done({
                 url: found[0], port: Number(found[1]), ended, output: () => output,
                 end: () => (child.kill("SIGINT"), ended),
+                kill: () => child.kill("SIGKILL"),
             });
         });
         child.on("exit", () => fail(new Error(`lendulet view ended: ${output}`)));
@@ -104,6 +105,9 @@ export const nativeChecks = {
         await page.fill("#set-substeps", "3");
         await page.press("#set-substeps", "Enter");
         await until(page, () => window.lendulet.player.world.settings()?.solverSteps === 3);
+        await page.fill("#set-threads", "2");
+        await page.press("#set-threads", "Enter");
+        await until(page, () => window.lendulet.player.world.settings()?.workers === 2);
         const at = await page.evaluate(() => window.lendulet.stage.project(window.lendulet.player.position(21)));
         await page.mouse.click(...at);
         await until(page, () => document.getElementById("body-numbers").textContent.includes("kg"));
@@ -155,9 +159,9 @@ export const nativeChecks = {
             }));
             const native = await startNative(program, folder, join(place, "crate.gltf"));
             const page = await open({}, "?shadows=0#paused=1", native.url);
-            await until(page, () => window.lendulet?.visuals);
+            await until(page, () => window.lendulet?.picture.visuals);
             const drawn = await page.evaluate(() => {
-                const { visuals, bodies } = window.lendulet, pictures = [];
+                const { visuals, bodies } = window.lendulet.picture, pictures = [];
                 visuals.group.traverse(({ material }) => material && pictures.push(material.map?.image.width));
                 window.lendulet.frame();
                 return { parts: [...visuals.parts.keys()], hidden: [...bodies.hidden.keys()], pictures };
@@ -169,6 +173,47 @@ export const nativeChecks = {
                 assert.equal(await get(native.port, path), 404, path);
             await page.context().close();
             assert.equal(await native.end(), 0);
+        } finally {
+            rmSync(place, { recursive: true });
+        }
+    },
+
+    async "native: a repro file is made again, broad phases go along, and without the engine the page goes on"({
+        open, program, folder, forgive,
+    }) {
+        const place = mkdtempSync(join(tmpdir(), "lendulet-"));
+        try {
+            const file = join(place, "thrown.json"), hash = "0000000000000000";
+            const ball = { do: "sphere", radius: 0.4, at: [-6, 2, 0], velocity: [14, 0, 0], density: 800 };
+            const repro = { lendulet: "repro", version: 1, scene: "stack:4", steps: 50, hash,
+                deeds: [{ step: 7, command: ball }] };
+            writeFileSync(file, JSON.stringify(repro));
+            const summary = spawnSync(program, ["run", file, "--json", "-", "--quiet"], { encoding: "utf8" });
+            assert.equal(summary.status, 1); // not those bits
+            writeFileSync(file, JSON.stringify({ ...repro, hash: JSON.parse(summary.stdout).hash }));
+            const native = await startNative(program, folder, file);
+            const page = await open({ viewport: { width: 1120, height: 420 } }, "?shadows=0", native.url);
+            await until(page, () => document.getElementById("message").textContent.startsWith("The same bits"));
+            assert.equal(await page.evaluate(() => window.lendulet.player.world.kind), "native");
+            await page.keyboard.press("p");
+            const from = await page.evaluate(() => window.lendulet.player.world.stepCount);
+            await until(page, (from) => window.lendulet.player.world.stepCount > from + 40, from);
+            await page.click("#drop");
+            await page.evaluate(() => (window.lendulet.player.playing = false));
+            await until(page, () => !window.lendulet.player.world.busy);
+            await page.evaluate(() => window.lendulet.player.step());
+            await until(page, () => window.lendulet.comparison.rows().every((r) => r.same && r.time > 0));
+            // The engine dies while the page plays.
+            await page.click("#play");
+            forgive(/ERR_CONNECTION_REFUSED/); // such as for the page's icon, when its address changes
+            native.kill();
+            await until(page, () => document.getElementById("message").textContent.includes("gone"));
+            await page.click("#step");
+            await page.keyboard.press("r");
+            await until(page, () => window.lendulet.player.world.kind === "page");
+            await page.evaluate(() => window.lendulet.player.play(true));
+            await until(page, () => window.lendulet.player.world.stepCount > 5);
+            await page.context().close();
         } finally {
             rmSync(place, { recursive: true });
         }

@@ -4,11 +4,11 @@
 //   id      number that the answer carries
 //   open    name of a built-in scene; "" is the scene or file that the program was started with
 //   go      key of a snapshot to go back to
-//   do      list of changes, objects with a member "do": see change() in session.cpp
+//   do      list of changes, objects with a member "do": see change.h, and Session::change() for forks
 //   steps   how many steps to do, at most 64
 //   keep    key under which to keep a snapshot; forget: list of keys
 //   body    index of the body that is looked into
-//   world   1: all of this is for the fork, 0: for the world itself
+//   world   1 to 9: all of this is for the fork of that number, 0: for the world itself
 //   explain {what, simplex, a, b}: what the collision algorithms do with two shapes, as `lendulet explain` takes them
 //   want    list of what the answer is to hold, by the names in session.cpp
 // The answer is binary, little endian: u32 magic, u32 id, then sections, each u32 kind, u32 bytes, and the structures
@@ -30,8 +30,11 @@
 
 namespace lendulet::cli {
 
+struct Asked;
+
 inline constexpr size_t max_request_bytes = 64 * 1024;
 inline constexpr int max_steps_per_request = 64;
+inline constexpr int most_forks = 9;                             // one to compare with by eye, one for each broad phase
 inline constexpr size_t max_snapshot_bytes = size_t{768} << 20;  // of one session
 inline constexpr uint32_t reply_magic = 0x56444e4c;              // "LNDV"
 
@@ -61,7 +64,7 @@ struct SessionState {
     double time;
     uint64_t steps, hash;  // hash: 0 where it was not wanted
     float step_size;
-    uint32_t forked;          // 1: there is a fork
+    uint32_t forked;          // 1: there is the fork of number 1
     uint64_t snapshot_bytes;  // kept
 };
 
@@ -75,16 +78,15 @@ public:
     std::string answer(std::string_view request);
 
 private:
-    struct Request;
-    void perform(const Request& request);
+    void perform(const Asked& request);
     void open(const std::string& name);
-    void change(const Request& command);
+    void change(const Asked& command);
     void keep(uint32_t key);
     void go(uint32_t key);
     lendulet_world* world();
 
     OpenScene open_;
-    std::unique_ptr<lendulet_world> worlds_[2];  // the world, and its fork
+    std::unique_ptr<lendulet_world> worlds_[1 + most_forks];  // the world, and its forks
     size_t chosen_ = 0;
     std::map<uint32_t, std::vector<uint8_t>> kept_;
     size_t kept_bytes_ = 0;

@@ -1,8 +1,9 @@
 // The engine compiled to WebAssembly: its C interface (include/lendulet/lendulet_c.h) as classes. Lists are views of
 // the module's memory, not copies: they hold until the next call of the engine.
+import { addBody } from "./builder";
 import { bodyAt, collidersAt, hashText, jointsAt, putSettings, settingsAt, statisticsAt, vectorAt } from "./decode";
 import {
-    type BodyState, boxStride, type Command, contactStride, groupStride, type Hit, type JointInfo, type Kept,
+    type BodyState, BodyType, boxStride, type Command, contactStride, groupStride, type Hit, type JointInfo, type Kept,
     type Looks, motionStride, poseStride, Refused, type SceneInfo, type Settings, type Shapes, type Statistics,
     type Surface, type Vec3, type World,
 } from "./types";
@@ -71,6 +72,7 @@ export class Engine extends Module {
 export class PageWorld implements World {
     readonly kind = "page";
     readonly busy = false;
+    readonly ahead = 0;
     arrived: (steps: number) => void = () => undefined;
     failed: (sentence: string) => void = () => undefined;
     looks?: Looks;
@@ -111,6 +113,16 @@ export class PageWorld implements World {
             case "box":
                 e.checked("lendulet_add_box", handle, e.put(1, command.half), e.put(2, command.at),
                     e.put(3, command.velocity), command.density, 0);
+                break;
+            case "shape":
+                addBody(this, {
+                    type: BodyType.dynamic, position: [...command.at], orientation: [0, 0, 0, 1],
+                    velocity: [...command.velocity], angularVelocity: [0, 0, 0], mass: 0, gravityFactor: 1, name: "",
+                }, [{
+                    type: command.type, mesh: -1, trigger: false, size: [0, 1, 2, 3].map((k) => command.size[k] ?? 0),
+                    rounding: command.rounding, position: [0, 0, 0], orientation: [0, 0, 0, 1],
+                    density: command.density, friction: -1, restitution: -1,
+                }]);
                 break;
             case "grab":
                 e.checked("lendulet_grab", handle, this.number(command.body), e.put(1, command.point));

@@ -63,6 +63,7 @@ export function isRecording(bytes: Uint8Array): boolean {
 export class RecordingWorld implements World {
     readonly kind = "recording";
     readonly busy = false;
+    readonly ahead = 0;
     readonly scene: string;
     readonly stepSize: number;
     stepCount = 0;

@@ -20,7 +20,7 @@ interface Asked {
     id?: number;
     open?: string;
     world?: number;
-    do?: (Command | { do: "fork" | "join" })[];
+    do?: (Command | { do: "fork" | "join"; to: number })[];
     steps?: number;
     keep?: number;
     go?: number;
@@ -100,6 +100,7 @@ export class StreamWorld implements World {
     stepCount = 0;
     arrived: (steps: number) => void = () => undefined;
     failed: (sentence: string) => void = () => undefined;
+    ahead = 0;
     private pending = 0;
     private commands: Command[] = [];
     private latest: Asked = {};
@@ -134,7 +135,7 @@ export class StreamWorld implements World {
         });
     }
     destroy(): void {
-        if (this.which === 1) this.connection.ask({ do: [{ do: "join" }] }, () => undefined);
+        if (this.which > 0) this.connection.ask({ do: [{ do: "join", to: this.which }] }, () => undefined);
     }
 
     get busy(): boolean {
@@ -162,9 +163,9 @@ export class StreamWorld implements World {
         const forget = kept.flatMap(({ key }) => (key === undefined ? [] : [key]));
         if (forget.length > 0) this.connection.ask({ world: this.which, forget }, () => undefined);
     }
-    fork(): World {
-        this.connection.ask({ do: [{ do: "fork" }] }, (answer) => this.complain(answer));
-        const twin = new StreamWorld(this.connection, 1);
+    fork(number: number): World {
+        this.connection.ask({ do: [{ do: "fork", to: number }] }, (answer) => this.complain(answer));
+        const twin = new StreamWorld(this.connection, number);
         twin.ask({ want: ["shapes"] }, 0);
         return twin;
     }
@@ -172,6 +173,7 @@ export class StreamWorld implements World {
     // --- asking and being answered
 
     private ask(asked: Asked, steps: number): void {
+        if (!this.connection.isOpen) return this.failed("The native engine is gone.");
         const now = performance.now();
         const want = new Set(["poses", ...(asked.want ?? [])]);
         for (const [name, until] of this.wanted) if (until > now) want.add(name);
@@ -181,8 +183,10 @@ export class StreamWorld implements World {
         this.commands = [];
         this.latest = message;
         ++this.pending;
+        this.ahead += asked.steps ?? 0;
         this.connection.ask(message, (answer) => {
             --this.pending;
+            this.ahead -= asked.steps ?? 0;
             this.read(answer);
             const failed = this.complain(answer);
             // Bodies came or went: what they look like is asked for before anybody draws them.

@@ -4,7 +4,8 @@
 export type Vec3 = readonly [number, number, number];
 
 export const poseStride = 8;    // floats: position, speed (-1: asleep), orientation x y z w
-export const contactStride = 8; // floats: position, separation, normal, normal impulse
+// Words: position, separation, normal, normal impulse, all floats; bodies A and B, manifold; friction impulse, a float.
+export const contactStride = 12;
 export const boxStride = 8;     // words: lower 3f, depth i, upper 3f, leaf i
 export const groupStride = 2;   // ints: island, colour
 export const motionStride = 12; // floats: centre, mass, momentum, kinetic energy, angular momentum, reach
@@ -120,6 +121,7 @@ export interface Settings {
 export type Command =
     | { do: "sphere"; radius: number; at: Vec3; velocity: Vec3; density: number }
     | { do: "box"; half: Vec3; at: Vec3; velocity: Vec3; density: number }
+    | { do: "shape"; type: ShapeType; size: number[]; rounding: number; at: Vec3; velocity: Vec3; density: number }
     | { do: "grab"; body: number; point: Vec3 }
     | { do: "drag"; target: Vec3 }
     | { do: "release" }
@@ -158,6 +160,7 @@ export interface World {
     readonly looks?: Looks;
     readonly hash: string; // sixteen hexadecimal digits, as `lendulet run` prints them; "" where it is not known
     readonly busy: boolean; // something that was asked for is still to come
+    readonly ahead: number; // steps among it: what is done now is done after them
     arrived: (steps: number) => void; // the state is another one, by so many steps
     failed: (sentence: string) => void;
 
@@ -166,7 +169,7 @@ export interface World {
     keep(): Kept;
     go(kept: Kept): void;
     forget(kept: Kept[]): void;
-    fork(): World | null;
+    fork(number: number): World | null; // numbers of forks that are there at the same time differ, 1 to 9
     destroy(): void;
 
     poses(): Float32Array;

@@ -51,7 +51,7 @@ export class View {
     aim(bounds: THREE.Box3, atOnce: boolean): void {
         const { stage } = this, { clientWidth: width, clientHeight: height } = this.canvas;
         stage.camera.setViewOffset(width, height, 0, this.lift * height, width, height);
-        stage.frame(bounds, 0.3);
+        stage.frame(bounds, 0.3, true);
         this.span = stage.span;
         this.goal.copy(stage.controls.target);
         this.goalDistance = stage.camera.position.distanceTo(this.goal);

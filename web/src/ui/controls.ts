@@ -1,9 +1,11 @@
 // The page's buttons, fields and keys. Each control has one action; keys do what the controls do.
 import type { App } from "../app";
+import { shapeNames } from "../hand";
 import { type Colouring, colourings, dark, light } from "../view/theme";
-import { type BoxView } from "../view/structure";
-import { element } from "./dom";
+import { drawings } from "../view/structure";
+import { element, make } from "./dom";
 import { Files } from "./files";
+import { readLink } from "./permalink";
 
 export function connect(app: App): void {
     const button = (id: string, action: () => void) =>
@@ -17,14 +19,6 @@ export function connect(app: App): void {
     canvas.addEventListener("pointermove", (event) => (aim = [event.clientX, event.clientY]));
     canvas.addEventListener("pointerleave", () => (aim = null));
 
-    const setColours = (how: Colouring) => {
-        colours.value = how;
-        app.setColours(how);
-    };
-    const setContacts = (on: boolean) => {
-        app.setContacts(on);
-        element("contacts").setAttribute("aria-pressed", String(on));
-    };
     const setSpeed = (index: number) => {
         speed.selectedIndex = Math.min(Math.max(index, 0), speed.options.length - 1);
         app.player.timeScale = Number(speed.value);
@@ -38,30 +32,32 @@ export function connect(app: App): void {
     button("restart", () => app.restart());
     button("play", () => app.player.play(!app.player.playing));
     button("step", () => app.player.step());
-    button("contacts", () => setContacts(!app.contacts));
-    button("shoot", () => app.shoot(...middle()));
-    button("drop", () => app.drop(...middle()));
+    button("contacts", () => app.setContacts(!app.picture.contacts));
+    button("shoot", () => app.hand.shoot(...middle()));
+    button("drop", () => app.hand.drop(...middle()));
     button("fork", () => app.toggleFork());
     button("theme", () => app.toggleTheme());
     button("help", () => keys.showModal());
     timeline.addEventListener("input", () => app.guarded(() => look(Number(timeline.value))));
     speed.addEventListener("change", () => setSpeed(speed.selectedIndex));
-    colours.addEventListener("change", () => setColours(colours.value as Colouring));
+    colours.addEventListener("change", () => app.setColours(colours.value as Colouring));
     element<HTMLInputElement>("size").addEventListener("change", (event) =>
         app.guarded(() => app.setSize(Number((event.target as HTMLInputElement).value))));
-    colours.value = app.colours;
-    element("contacts").setAttribute("aria-pressed", String(app.contacts));
+    const shape = element<HTMLSelectElement>("shape");
+    shape.append(...shapeNames.map((name) => make("option", name)));
+    shape.addEventListener("change", () => (app.hand.shape = shape.value));
 
     const actions: Record<string, () => void> = {
         " ": () => app.player.play(!app.player.playing),
         ArrowRight: () => app.player.step(),
         ArrowLeft: back,
         r: () => app.restart(),
-        b: () => app.shoot(...(aim ?? middle())),
-        x: () => app.drop(...(aim ?? middle())),
-        c: () => setContacts(!app.contacts),
-        f: () => app.lookAtAll(),
+        b: () => app.hand.shoot(...(aim ?? middle())),
+        x: () => app.hand.drop(...(aim ?? middle())),
+        c: () => app.setContacts(!app.picture.contacts),
+        f: () => app.picture.lookAtAll(),
         k: () => app.toggleFork(),
+        p: () => app.compare(!app.comparison.on),
         e: () => (location.hash = element<HTMLAnchorElement>("explain-open").hash),
         d: () => app.toggleTheme(),
         "[": () => setSpeed(speed.selectedIndex - 1),
@@ -69,7 +65,7 @@ export function connect(app: App): void {
         "?": () => keys.showModal(),
         Escape: () => app.pick(null),
     };
-    colourings.forEach((how, i) => (actions[String(i + 1)] = () => setColours(how)));
+    colourings.forEach((how, i) => (actions[String(i + 1)] = () => app.setColours(how)));
     window.addEventListener("keydown", (event) => {
         const target = event.target as HTMLElement;
         const typing = target.closest("input:not([type=range]), select, dialog");
@@ -84,7 +80,8 @@ export function connect(app: App): void {
     });
 
     drawing(app);
-    new Files(app);
+    const files = new Files(app), { repro } = app.sources;
+    if (repro && !readLink().deeds) app.guarded(() => files.openRepro(repro.name, repro.bytes));
     sources(app);
     sheets();
     const system = matchMedia("(prefers-color-scheme: dark)");
@@ -95,11 +92,9 @@ export function connect(app: App): void {
 // What is drawn of the engine's own structures.
 function drawing(app: App): void {
     const boxes = element<HTMLSelectElement>("boxes");
-    boxes.addEventListener("change", () => app.setStructure({ boxes: boxes.value as BoxView }));
-    for (const what of ["joints", "momenta", "trails"] as const) {
-        const tick = element<HTMLInputElement>(`show-${what}`);
-        tick.addEventListener("change", () => app.setStructure({ [what]: tick.checked }));
-    }
+    const ticks = drawings.map((what) => element<HTMLInputElement>(`show-${what}`));
+    const choose = () => app.setDrawn([boxes.value, ...drawings.filter((_, i) => ticks[i].checked)]);
+    for (const control of [boxes, ...ticks]) control.addEventListener("change", choose);
 }
 
 // Where scenes are computed, if there is a choice.

@@ -22,7 +22,7 @@ export function connectExplain(app: App, shadows: number, address: string): void
             app.away = true;
         }
         mode ??= window.lenduletExplain = new ExplainMode(explain, shadows, closed);
-        mode.open(app.theme, hash);
+        mode.open(app.picture.theme, hash);
     };
     window.addEventListener("hashchange", ({ newURL }) => {
         const { hash } = new URL(newURL); // the address may be another one by now: the scene writes its own into it

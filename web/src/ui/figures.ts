@@ -13,7 +13,7 @@ export class Figures {
     private since = performance.now();
     rate = 0; // frames a second
 
-    constructor(stages: string[]) {
+    constructor(stages: string[], private readonly drawnBy: string) {
         for (const stage of stages) {
             const bar = make("div", "", { class: "bar" }), ms = make("span", "", { class: "ms" });
             const cell = make("div");
@@ -40,6 +40,7 @@ export class Figures {
     show(player: Player): void {
         const s = player.world.statistics();
         this.numbers.set("frames", `${this.rate.toFixed(0)} /s`);
+        this.numbers.set("drawn", `by ${this.drawnBy}`);
         const where = { page: "in the page", native: "natively", recording: "long ago" };
         this.numbers.set("computed", where[player.world.kind]);
         if (player.twin) {
@@ -60,6 +61,7 @@ export class Figures {
         this.numbers.set("deepest overlap", `${(1000 * s.penetration).toFixed(1)} mm`);
         this.numbers.set("kinetic energy", amount(s.kineticEnergy, "J"));
         this.numbers.set("potential energy", amount(s.potentialEnergy, "J"));
+        this.numbers.set("momentum", amount(Math.hypot(...s.momentum), "kg m/s"));
         this.bars.forEach((b, i) => (b.mean = 0.8 * b.mean + 0.2 * s.stages[i]));
         const most = Math.max(...this.bars.map((b) => b.mean), 1e-6);
         for (const { bar, ms, mean } of this.bars) {

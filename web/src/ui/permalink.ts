@@ -1,35 +1,17 @@
 // The scene, the view and what was done by hand in the page's address: #scene=box_pile:600&colours=speed&view=…&deeds=…
 import type * as THREE from "three";
-import type { Deed } from "../player";
+import { decode, type Deed, encode } from "../deeds";
 import type { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 export interface Link {
     scene?: string;
     colours?: string;
     contacts?: boolean;
+    draw?: string[]; // of the engine's own structures
+    compare?: boolean; // the broad phases
     paused?: boolean;
     view?: number[]; // camera and target, m
     deeds?: Deed[];  // what was done, where it is short enough
-}
-
-const longest = 1500; // characters of deeds
-
-function encode(deeds: Deed[]): string {
-    const text = JSON.stringify(deeds, (_, v) => (typeof v === "number" ? Number(v.toPrecision(5)) : v));
-    return text.length > longest ? "" : btoa(text).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
-}
-// Nothing where it is no list of deeds.
-export function decode(text: string): Deed[] | undefined {
-    try {
-        const list: unknown = JSON.parse(atob(text.replaceAll("-", "+").replaceAll("_", "/")));
-        return isDeeds(list) ? list : undefined;
-    } catch {
-        return undefined;
-    }
-}
-export function isDeeds(list: unknown): list is Deed[] {
-    const isDeed = (d: Partial<Deed> | null) => Number.isInteger(d?.step) && typeof d?.command?.do === "string";
-    return Array.isArray(list) && list.every(isDeed);
 }
 
 export function readLink(): Link {
@@ -39,6 +21,8 @@ export function readLink(): Link {
         scene: values.get("scene") ?? undefined,
         colours: values.get("colours") ?? undefined,
         contacts: values.get("contacts") === "1",
+        draw: values.get("draw")?.split(","),
+        compare: values.get("compare") === "1",
         paused: values.get("paused") === "1",
         deeds: decode(values.get("deeds") ?? ""),
         view: view?.length === 6 && view.every(Number.isFinite) ? view : undefined,
@@ -54,8 +38,10 @@ export function writeLink(link: Link): void {
     const parts = [`scene=${link.scene ?? ""}`];
     if (link.colours && link.colours !== "body") parts.push(`colours=${link.colours}`);
     if (link.contacts) parts.push("contacts=1");
+    if (link.draw) parts.push(`draw=${link.draw.join(",")}`);
+    if (link.compare) parts.push("compare=1");
     if (link.view) parts.push(`view=${link.view.join(",")}`);
-    const deeds = link.deeds?.length ? encode(link.deeds) : "";
+    const deeds = encode(link.deeds ?? []);
     if (deeds) parts.push(`deeds=${deeds}`);
     const hash = "#" + parts.join("&");
     if (location.hash !== hash) history.replaceState(null, "", hash);

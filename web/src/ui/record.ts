@@ -1,7 +1,6 @@
-// Files made in the page: recordings (io/recording.h), repro files, pictures, films.
+// Recordings made in the page (io/recording.h), and how files are handed to the visitor.
 import { Fnv } from "../engine/fnv";
 import { poseStride, type Shapes, type Surface } from "../engine/types";
-import type { Deed } from "../player";
 
 export function download(name: string, content: BlobPart): void {
     const link = document.createElement("a");
@@ -9,16 +8,6 @@ export function download(name: string, content: BlobPart): void {
     link.download = name;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-}
-
-// What makes a run again: the scene and what was done in it. The hash tells whether it is the same run.
-export interface Repro {
-    lendulet: "repro";
-    version: 1;
-    scene: string;
-    steps: number;
-    hash: string;
-    deeds: Deed[];
 }
 
 class Writer {

@@ -62,7 +62,10 @@ export class Tuning {
             if (input !== document.activeElement || input instanceof HTMLSelectElement)
                 input.value = String(Number(read(settings).toPrecision(5)));
     }
-    follow(settings: Settings | null): void {
-        this.show(settings);
+    // Threads are the native engine's: the module in the page has none.
+    offerThreads(there: boolean): void {
+        const field = element<HTMLInputElement>("set-threads");
+        field.disabled = !there;
+        field.title = there ? "" : "The engine in the page has one thread; ./dev view has many.";
     }
 }

@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import { BodyType, type Collider, groupStride, poseStride, type Shapes, ShapeType } from "../engine/types";
 import { modelOf } from "./geometry";
-import { bodyMaterial, glassMaterial, groundMaterial, wallMaterial } from "./materials";
+import { bodyMaterial, glassMaterial, wallMaterial } from "./materials";
 import { type Colouring, colourOf, colourOfGroup, driven, highlight } from "./theme";
 
 interface Batch {
@@ -17,7 +17,7 @@ interface Batch {
 // How colliders are drawn: what moves, what it stands on, and containers, into which one must see.
 type Kind = "body" | "ground" | "glass" | "wall";
 
-const materials = { ground: groundMaterial, glass: glassMaterial, wall: wallMaterial, body: bodyMaterial };
+const materials = { glass: glassMaterial, wall: wallMaterial, body: bodyMaterial };
 
 function kindOf(c: Collider, name: string, parts: number): Kind {
     const type = c.bodyType;
@@ -43,6 +43,8 @@ export class Bodies {
     private batches: Batch[] = [];
     private types: BodyType[] = [];
     private readonly geometries = new Map<string, THREE.BufferGeometry>(); // by ShapeModel.key
+
+    constructor(private readonly groundMaterial: () => THREE.Material) {}
 
     // Anew from the world's colliders. `other`: of another scene, whose surfaces must be read again.
     build(shapes: Shapes, other: boolean): void {
@@ -79,7 +81,7 @@ export class Bodies {
             geometry = model ? model.make(shapes.surface) : new THREE.PlaneGeometry(2e3, 2e3);
             this.geometries.set(key, geometry);
         }
-        const material = materials[kind]();
+        const material = kind === "ground" ? this.groundMaterial() : materials[kind]();
         const isClear = kind === "glass" || kind === "wall";
         const mesh = new THREE.InstancedMesh(geometry, material, colliders.length);
         mesh.instanceMatrix.setUsage(fixed ? THREE.StaticDrawUsage : THREE.DynamicDrawUsage);
@@ -97,7 +99,7 @@ export class Bodies {
                 new THREE.Vector3(...c.position), new THREE.Quaternion(x, y, z, w), one);
         });
         const scales = colliders.map((c) => new THREE.Vector3(...(modelOf(c)?.scale ?? [1, 1, 1])));
-        const reaches = colliders.map((c) => (c.type === ShapeType.plane ? Infinity : 0.8 * Math.max(...c.size)));
+        const reaches = colliders.map((c) => (c.type === ShapeType.plane ? Infinity : 0.9 * Math.max(...c.size)));
         this.batches.push({ mesh, colliders, scales, locals, reaches, fixed });
         this.group.add(mesh);
     }
@@ -195,6 +197,9 @@ export class Bodies {
     }
     isDynamic(body: number): boolean {
         return this.types[body] === BodyType.dynamic;
+    }
+    typeOf(body: number): BodyType {
+        return this.types[body];
     }
 
     // Bounds of what moves; of everything where nothing does. Shapes without end are left out.

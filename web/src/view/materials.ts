@@ -2,6 +2,7 @@
 import * as THREE from "three";
 
 export const gridColour = { value: new THREE.Color(0x888888) };
+export const groundColour = { value: new THREE.Color(0xcccccc) };
 export const groundReach = { value: 10 }; // radius of what is looked at, m
 
 export function bodyMaterial(): THREE.MeshStandardMaterial {

@@ -1,8 +1,8 @@
 // The stage: renderer, camera, light and what stands around the bodies.
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { gridColour, groundReach } from "./materials";
-import { Occlusion } from "./occlusion";
+import { type Drawer, type MakeDrawer, webGl } from "./drawer";
+import { gridColour, groundColour, groundReach } from "./materials";
 import type { Theme } from "./theme";
 
 // The colour that the Khronos neutral tone mapper turns into this one, nearly, for greyish colours: with occlusion the
@@ -20,26 +20,27 @@ function firstSide(size: THREE.Vector3): THREE.Vector3 {
     const height = size.y / Math.max(size.x, size.z, 1e-6);
     return new THREE.Vector3(0.62, THREE.MathUtils.clamp(0.95 - 1.2 * height, 0.42, 0.95), 1).normalize();
 }
-const margin = 0.98; // of what is looked at: boxes are seldom full to their corners
+// How much room there is around what is looked at, and by how much of the picture it stands below the middle, beneath
+// the title.
+const margin = 1.1, lift = 0.045;
 
 export class Stage {
     readonly scene = new THREE.Scene();
     readonly camera = new THREE.PerspectiveCamera(42, 1, 0.05, 5000);
     readonly controls: OrbitControls;
-    private readonly renderer: THREE.WebGLRenderer;
+    readonly drawer: Drawer;
     private readonly sun = new THREE.DirectionalLight();
     private readonly sky = new THREE.HemisphereLight();
     private readonly sunDirection = new THREE.Vector3(0.45, 1, 0.35).normalize();
     private size = [0, 0];
-    private occlusion: Occlusion | null = null;
+    lost: (sentence: string) => void = () => undefined; // nothing is drawn any more
 
-    constructor(readonly canvas: HTMLCanvasElement, shadowSize: number, occlusion: boolean) {
-        // Without shadows the machine draws in software, most likely: smooth edges are left out as well.
-        const antialias = shadowSize > 0;
-        this.renderer = new THREE.WebGLRenderer({ canvas, antialias, powerPreference: "high-performance" });
-        this.renderer.shadowMap.enabled = shadowSize > 0;
-        this.renderer.shadowMap.type = THREE.PCFShadowMap;
-        this.renderer.toneMapping = THREE.NeutralToneMapping;
+    constructor(
+        readonly canvas: HTMLCanvasElement, shadowSize: number, occlusion: boolean, make: MakeDrawer = webGl,
+    ) {
+        const { scene, camera } = this;
+        const lost = (sentence: string) => this.lost(sentence);
+        this.drawer = make({ canvas, scene, camera, shadows: shadowSize > 0, occlusion, lost });
         this.controls = new OrbitControls(this.camera, canvas);
         this.controls.enableDamping = true;
         this.controls.dampingFactor = 0.12;
@@ -51,12 +52,10 @@ export class Stage {
         this.sun.shadow.normalBias = 0.03;
         this.sun.shadow.bias = -0.0002;
         this.scene.add(this.sky, this.sun, this.sun.target);
-        if (occlusion) this.occlusion = new Occlusion(this.renderer, this.scene, this.camera);
     }
     // For machines that are too slow for it.
     dropOcclusion(): void {
-        if (!this.occlusion) return;
-        this.occlusion = null;
+        this.drawer.dropOcclusion();
         this.apply(this.theme);
     }
     private theme!: Theme;
@@ -64,7 +63,7 @@ export class Stage {
     apply(theme: Theme): void {
         this.theme = theme;
         const sky = new THREE.Color(theme.sky);
-        if (this.occlusion) beforeToneMapping(sky);
+        if (this.drawer.mapsSky) beforeToneMapping(sky);
         this.scene.background = sky;
         this.scene.fog = new THREE.Fog(sky, 100, 500);
         this.sun.color.setHex(theme.sun);
@@ -73,6 +72,7 @@ export class Stage {
         this.sky.groundColor.setHex(theme.hemisphere[1]);
         this.sky.intensity = theme.hemisphere[2];
         gridColour.value.setHex(theme.line);
+        groundColour.value.setHex(theme.ground);
         this.setReach(this.reach);
     }
 
@@ -91,8 +91,8 @@ export class Stage {
     }
 
     // Looks at what lies within the bounds, from a little above. `least`: radius of the smallest thing that fills the
-    // picture, m.
-    frame(bounds: THREE.Box3, least = 1.2): void {
+    // picture, m. `tight`: as large as it can be.
+    frame(bounds: THREE.Box3, least = 1.2, tight = false): void {
         const sphere = bounds.getBoundingSphere(new THREE.Sphere());
         const radius = Math.min(Math.max(sphere.radius, least), 400);
         this.setReach(radius);
@@ -100,9 +100,23 @@ export class Stage {
         this.controls.target.copy(sphere.center);
         this.camera.position.copy(sphere.center).add(side);
         this.camera.lookAt(sphere.center);
-        this.camera.position.copy(sphere.center).addScaledVector(side, this.distanceOf(bounds, 0.6 * least));
+        const distance = (tight ? 0.98 : margin) * this.distanceOf(bounds, 0.6 * least);
+        this.camera.position.copy(sphere.center).addScaledVector(side, distance);
+        if (!tight) {
+            const up = new THREE.Vector3(0, 1, 0).applyQuaternion(this.camera.quaternion);
+            up.multiplyScalar(2 * lift * distance * Math.tan((this.camera.fov * Math.PI) / 360));
+            this.camera.position.add(up);
+            this.controls.target.add(up);
+        }
         this.controls.minDistance = radius / 40;
         this.controls.maxDistance = 12 * radius;
+        this.controls.update();
+    }
+
+    // From a place at a target: six numbers.
+    look(view: number[]): void {
+        this.camera.position.fromArray(view);
+        this.controls.target.fromArray(view, 3);
         this.controls.update();
     }
 
@@ -126,7 +140,7 @@ export class Stage {
             const [x, y] = [corner.x, corner.y].map((v) => Math.max(Math.abs(v), least));
             distance = Math.max(distance, corner.z + Math.max(x / wide, y / high));
         }
-        return margin * distance;
+        return distance;
     }
 
     // Shadows fall around what moves.
@@ -152,20 +166,17 @@ export class Stage {
     update(): boolean {
         const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
         const ratio = Math.min(window.devicePixelRatio, 2);
-        const resized = width !== this.size[0] || height !== this.size[1] || ratio !== this.renderer.getPixelRatio();
+        const resized = width !== this.size[0] || height !== this.size[1] || ratio !== this.drawer.ratio;
         if (resized) {
             this.size = [width, height];
-            this.renderer.setPixelRatio(ratio);
-            this.renderer.setSize(width, height, false);
-            this.occlusion?.resize(width, height, ratio);
+            this.drawer.resize(width, height, ratio);
             this.camera.aspect = width / Math.max(height, 1);
             this.camera.updateProjectionMatrix();
         }
         return this.controls.update() || resized;
     }
     render(): void {
-        if (this.occlusion) this.occlusion.render(this.reach);
-        else this.renderer.render(this.scene, this.camera);
+        this.drawer.render(this.reach);
     }
 
     // The ray through a point of the page.

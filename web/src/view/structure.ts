@@ -1,35 +1,45 @@
 // What the engine thinks, drawn from its own lists: boxes of the broad phase and the levels of its tree, intervals of
-// sort-and-sweep, frames and limits of joints, momenta, and where bodies have been.
+// sort-and-sweep, frames and limits of joints, manifolds, centres of mass, momenta, and where bodies have been.
 import * as THREE from "three";
-import { boxStride, type JointInfo, JointType, motionStride, poseStride, type World } from "../engine/types";
+import {
+    boxStride, contactStride, type JointInfo, JointType, motionStride, poseStride, type World,
+} from "../engine/types";
 import { Lines } from "./lines";
 
 export type BoxView = "none" | "leaves" | "levels" | "intervals";
 export const boxViews: BoxView[] = ["none", "leaves", "levels", "intervals"];
+export const drawings = ["joints", "manifolds", "centres", "momenta", "trails"] as const;
+export type Drawing = (typeof drawings)[number];
 
 const trailSteps = 40, trailBodies = 1500;
 const levels = [0xd6493f, 0xe08a3c, 0xd8b93f, 0x6fa84f, 0x3f9c9c, 0x4a78c2, 0x8a5fb8].map((c) => new THREE.Color(c));
 const leafColour = new THREE.Color(0x8894a0), red = new THREE.Color(0xd6493f), green = new THREE.Color(0x4f9d4f);
 const blue = new THREE.Color(0x3f74c9), amber = new THREE.Color(0xe0a23c), violet = new THREE.Color(0x9a5fc0);
+const teal = new THREE.Color(0x2fa36b);
 
 export class Structure {
     readonly group = new THREE.Group();
     boxes: BoxView = "none";
     joints = false;
+    manifolds = false;
+    centres = false;
     momenta = false;
     trails = false;
     private readonly boxLines = new Lines(5, 0.75);
     private readonly jointLines = new Lines(6);
     private readonly momentumLines = new Lines(7);
     private readonly trailLines = new Lines(1, 0.8);
+    private readonly manifoldLines = new Lines(6);
+    private readonly centreLines = new Lines(7);
     private past: Float32Array[] = []; // positions of the first bodies, a step each
 
     constructor() {
-        for (const lines of [this.boxLines, this.jointLines, this.momentumLines, this.trailLines])
+        for (const lines of [this.boxLines, this.jointLines, this.momentumLines, this.trailLines, this.manifoldLines,
+            this.centreLines])
             this.group.add(lines.mesh);
     }
     get any(): boolean {
-        return this.boxes !== "none" || this.joints || this.momenta || this.trails;
+        return this.boxes !== "none" || drawings.some((what) => this[what]);
     }
 
     // After every step.
@@ -52,6 +62,12 @@ export class Structure {
         this.jointLines.begin();
         if (this.joints) for (const joint of world.joints()) this.drawJoint(joint, span / 30);
         this.jointLines.end();
+        this.manifoldLines.begin();
+        if (this.manifolds) this.drawManifolds(world.contacts(), span);
+        this.manifoldLines.end();
+        this.centreLines.begin();
+        if (this.centres) this.drawCentres(world.motions(), span / 45);
+        this.centreLines.end();
         this.momentumLines.begin();
         if (this.momenta) this.drawMomenta(world.motions(), span);
         this.momentumLines.end();
@@ -132,6 +148,40 @@ export class Structure {
                 line(rim((i * Math.PI) / 8), rim(((i + 1) * Math.PI) / 8), amber);
                 if (i % 4 === 0) line(a, rim((i * Math.PI) / 8), amber);
             }
+        }
+    }
+
+    // The outline of each manifold, and its normal from the middle.
+    private drawManifolds(list: Float32Array, span: number): void {
+        const ints = new Int32Array(list.buffer, list.byteOffset, list.length);
+        const point = (at: number) => new THREE.Vector3(list[at], list[at + 1], list[at + 2]);
+        for (let at = 0; at < list.length; ) {
+            const points: THREE.Vector3[] = [], normal = point(at + 4), manifold = ints[at + 10];
+            for (; at < list.length && ints[at + 10] === manifold; at += contactStride) points.push(point(at));
+            const middle = new THREE.Vector3();
+            for (const p of points) middle.addScaledVector(p, 1 / points.length);
+            // In order around the normal.
+            const first = points[0].clone().sub(middle), second = new THREE.Vector3().crossVectors(normal, first);
+            const angle = (p: THREE.Vector3) => {
+                const way = p.clone().sub(middle);
+                return Math.atan2(way.dot(second), way.dot(first));
+            };
+            points.sort((a, b) => angle(a) - angle(b));
+            const line = (a: THREE.Vector3, b: THREE.Vector3, colour: THREE.Color) =>
+                this.manifoldLines.add(a.x, a.y, a.z, b.x, b.y, b.z, colour);
+            points.forEach((p, i) => line(p, points[(i + 1) % points.length], amber));
+            line(middle, middle.clone().addScaledVector(normal, span / 28), teal);
+        }
+    }
+
+    // A cross at each centre of mass.
+    private drawCentres(list: Float32Array, size: number): void {
+        for (let at = 0; at < list.length; at += motionStride) {
+            if (list[at + 3] === 0) continue;
+            const [x, y, z] = list.subarray(at, at + 3);
+            this.centreLines.add(x - size, y, z, x + size, y, z, red);
+            this.centreLines.add(x, y - size, z, x, y + size, z, green);
+            this.centreLines.add(x, y, z - size, x, y, z + size, blue);
         }
     }
 

@@ -1,0 +1,62 @@
+// `lendulet run FILE.json`: makes the run of a repro file again and compares its bits with those that were saved.
+#include <chrono>
+#include <cinttypes>
+#include <cstdio>
+
+#include "apps/lendulet/commands.h"
+#include "apps/lendulet/progress.h"
+#include "apps/lendulet/view/repro.h"
+#include "bindings/c/handle.h"
+#include "io/file.h"
+
+namespace lendulet::cli {
+
+namespace {
+
+// All steps, with what was done before each, and after the last.
+Status repeat(lendulet_world& world, const Repro& repro, RunObserver& observer, Progress& progress) {
+    size_t next = 0;
+    for (int step = 0; step <= repro.steps; ++step) {
+        Result<size_t> done = act(world, repro, step, next);
+        if (!done.ok()) return done.error();
+        next = done.value();
+        if (step == repro.steps) break;
+        if (lendulet_step(&world) < 0) return Error{ErrorCode::bad_config, lendulet_error()};
+        observer.after_step(world.scene);
+        progress.advance(step + 1);
+    }
+    return {};
+}
+
+}  // namespace
+
+int replay(const RunOptions& options) {
+    if (!options.record.empty()) return fail("--record: a repro file is run without a recording; the page makes one");
+    Result<Repro> read = read_repro(options.scene);
+    if (!read.ok()) return fail(read.error().message);
+    const Repro& repro = read.value();
+    Result<Scene> opened = open_scene(repro.scene, options);
+    if (!opened.ok()) return fail(opened.error().message);
+    lendulet_world world(std::move(opened).value());
+    RunObserver observer(world.scene);
+    const double dt = world.scene.dt;
+    auto start = std::chrono::steady_clock::now();
+    {
+        Progress progress(repro.steps, dt, !options.quiet);
+        Status repeated = repeat(world, repro, observer, progress);
+        if (!repeated.ok()) return fail(printable(options.scene) + ": " + repeated.error().message);
+    }
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    Status reported = report(observer.finish(world.scene, dt, wall), options);
+    if (!reported.ok()) return fail(reported.error().message);
+    char hash[17];
+    std::snprintf(hash, sizeof hash, "%016" PRIx64, world.scene.world.hash());
+    const bool same = repro.hash == hash;
+    if (!same)
+        std::fprintf(stderr, "lendulet: not the bits that were saved: %s, the file has %s\n", hash,
+                     printable(repro.hash).c_str());
+    else if (!options.quiet) std::fprintf(stderr, "The same bits as when it was saved.\n");
+    return same ? 0 : 1;
+}
+
+}  // namespace lendulet::cli
