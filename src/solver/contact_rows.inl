@@ -478,6 +478,31 @@ LENDULET_FORCE_INLINE void apply_normals(const ContactRow<W, P>& c, WideVelocity
     A.w = A.w - IA * turn_a;
 }
 
+// What a contact holds is repeated from one substep to the next, also the blow by which a body was stopped. Where most
+// of it is given back at once, the friction that came with it is too, before the bodies move: else they would turn and
+// slide by it for a substep.
+template <int W, int P>
+[[gnu::noinline]] void let_go_of_friction(ContactRow<W, P>& c, WideVelocity<Wide<float, W>>& A, WideVelocity<Wide<float, W>>& B,
+                                          const SymMat3T<Wide<float, W>>& IA, const SymMat3T<Wide<float, W>>& IB,
+                                          Vec3T<Wide<float, W>> t2, Wide<float, W> left, Wide<float, W> gone) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f);
+    F share = select(gone > left, zero - gone / (left + gone), zero);
+    F f1 = share * c.friction.tangent[0], f2 = share * c.friction.tangent[1];
+    c.friction.tangent[0] = c.friction.tangent[0] + f1;
+    c.friction.tangent[1] = c.friction.tangent[1] + f2;
+    Vec3T<F> linear = f1 * c.t1 + f2 * t2, angular = zero_vector<F>();
+    if constexpr (P > 1) {
+        F twist = share * c.friction.twist;
+        c.friction.twist = c.friction.twist + twist;
+        angular = twist * c.n;
+    }
+    B.v = B.v + B.inverse_mass * linear;
+    A.v = A.v - A.inverse_mass * linear;
+    B.w = B.w + IB * (cross(c.rb, linear) + angular);
+    A.w = A.w - IA * (cross(c.ra, linear) + angular);
+}
+
 // `fixed_a` (A is not moved by constraints) and k.moved are the same for all rows of a loop: branches cost nothing
 // here, copies of the kernel would only take longer to build.
 template <int W, int P, Pass pass>
@@ -508,6 +533,9 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
         if (k.moved) update_displacement<W, P>(c, states, t2);
         sweep_normals<W, P, true>(c, A, B, t2, k, change);
         apply_normals<W, P, true>(c, A, B, IA, IB, t2, change);
+        F left = c.p[0].impulse, gone = splat<F>(0.0f) - change[0];
+        for (int j = 1; j < P; ++j) left = left + c.p[j].impulse, gone = gone - change[j];
+        if (mask_bits(gone > left)) let_go_of_friction<W, P>(c, A, B, IA, IB, t2, left, gone);
     } else {
         if (!fixed_a) {
             Vec3T<F> drift = drift_b - drift_a, moment = cross(held_impulse<W, P>(c, t2), drift);
