@@ -197,7 +197,7 @@ Impact impact_of(float gap, float approach, float acceleration) {
 
 // One point of a manifold; true where it bounced.
 bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPointRecord& point,
-                  float tangential_restitution, const SubstepConstants& k) {
+                  float tangential_restitution, const SubstepConstants& k, int sweep) {
     const Vec3 n = load(r.normal), ra0 = load(point.position), offset = load(r.arm_offset);
     const float half_gap = 0.5f * point.separation;
     // Core points turn with their bodies, swept surfaces do not.
@@ -236,21 +236,53 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
     const Vec3 impulse = impact_impulse(m, r, n, speed, tangential_restitution);
     a.apply(m.a, -impulse, time, k.first);
     b.apply(m.b, impulse, time, k.first);
+    if (a.movable()) bodies.start[static_cast<size_t>(r.body_a)].struck = sweep;
+    if (b.movable()) bodies.start[static_cast<size_t>(r.body_b)].struck = sweep;
     return true;
+}
+
+// Whether no point of a manifold can approach as fast as bounces do: most have bodies that hardly move.
+bool too_slow(const SolverBodies& bodies, const ContactRecord& r, const SubstepConstants& k) {
+    float fastest = 0.0f;
+    for (int side = 0; side < 2; ++side) {
+        const auto body = static_cast<size_t>(side == 0 ? r.body_a : r.body_b);
+        const BodyState& state = bodies.state[body];
+        const BodyStart& start = bodies.start[body];
+        const float v = length(load(start.v) + load(state.v)), w = length(load(start.w) + load(state.w));
+        if (v + w == 0.0f && !(state.inverse_mass > 0.0f)) continue;
+        float reach = 0.0f;
+        for (int j = 0; j < r.point_count; ++j) {
+            const Vec3 arm = load(r.points[j].position) - (side == 0 ? Vec3{} : load(r.arm_offset));
+            reach = maximum(reach, length(arm) + absolute(r.points[j].separation) + r.radius_a + r.radius_b);
+        }
+        const BodyBlock& block = bodies.blocks[body / block_bodies];
+        const size_t at = body % block_bodies;
+        const Vec3 push{block.acceleration[0][at], block.acceleration[1][at], block.acceleration[2][at]};
+        const float pull = state.inverse_mass > 0.0f ? length(push) : 0.0f;
+        fastest += v + w * reach + k.h * (pull + 2.0f * w * w * reach * maximum(block.anisotropy[at], 1.0f));
+    }
+    return fastest < k.bounce_speed;
 }
 
 }  // namespace
 
 bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, BouncingList bouncing,
-                     const SubstepConstants& k) {
+                     const SubstepConstants& k, int substep) {
+    const int first_sweep = 1 + max_sweeps * substep;
     bool any = false;
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         bool bounced = false;
+        const int number = first_sweep + sweep;
         for (int i = 0; i < bouncing.count; ++i) {
             const uint32_t record = bouncing.list[i];
             const ContactRecord& r = records[record];
+            // Nothing has changed where nobody was struck in the last sweep or in this one.
+            const BodyStart &a = bodies.start[static_cast<size_t>(r.body_a)],
+                            &b = bodies.start[static_cast<size_t>(r.body_b)];
+            if (sweep > 0 && a.struck < number - 1 && b.struck < number - 1) continue;
+            if (too_slow(bodies, r, k)) continue;
             const float back = bouncing.extras ? bouncing.extras[record].tangential_restitution : 0.0f;
-            for (int j = 0; j < r.point_count; ++j) bounced |= bounce_point(bodies, r, r.points[j], back, k);
+            for (int j = 0; j < r.point_count; ++j) bounced |= bounce_point(bodies, r, r.points[j], back, k, number);
         }
         any |= bounced;
         if (!bounced) break;
