@@ -57,11 +57,16 @@ World thrown(const Shape& shape, const Surface& s, float spin, bool at_other, Nu
     return world;
 }
 
-// The largest rise in a step, in parts of the energy at the start, over so many throws.
-double largest_rise(const Shape& shape, const Surface& s, float spin, bool at_other) {
-    Numbers numbers;
+// Of so many throws the largest rise in a step, in parts of the energy at the start, and how many have any.
+struct Rises {
     double largest = 0.0;
+    int throws = 0;
+};
+Rises rises(const Shape& shape, const Surface& s, float spin, bool at_other) {
+    Numbers numbers;
+    Rises all;
     for (int i = 0; i < 20; ++i) {
+        double largest = 0.0;
         World world = thrown(shape, s, spin, at_other, numbers);
         const double start = world.kinetic_energy();
         double before = start;
@@ -71,8 +76,13 @@ double largest_rise(const Shape& shape, const Surface& s, float spin, bool at_ot
             largest = std::max(largest, (now - before) / start);
             before = now;
         }
+        all.largest = std::max(all.largest, largest);
+        all.throws += largest > 1e-5;
     }
-    return largest;
+    return all;
+}
+double largest_rise(const Shape& shape, const Surface& s, float spin, bool at_other) {
+    return rises(shape, s, spin, at_other).largest;
 }
 
 TEST(Impacts, OnAFloorAddNoEnergy) {
@@ -89,9 +99,14 @@ TEST(Impacts, OfBallsAndCapsulesAddNoEnergy) {
                 EXPECT_LT(largest_rise(shape, s, spin, true), 1e-5) << spin << " " << s.friction << " " << s.tangential;
 }
 
-// Nor do blows without restitution, whose friction is not repeated.
+// Nor do blows without restitution, whose friction is not repeated, but for what undoing an overlap may cost.
 TEST(Impacts, WithoutRestitutionAddNoEnergy) {
-    for (float spin : {0.0f, 10.0f}) EXPECT_LT(largest_rise(shapes[0], {0.6f, 0.0f, 0.0f}, spin, false), 2e-3) << spin;
+    for (const Shape& shape : shapes)
+        for (float spin : {0.0f, 10.0f}) {
+            const Rises r = rises(shape, {0.6f, 0.0f, 0.0f}, spin, false);
+            EXPECT_LE(r.throws, 1) << spin;
+            EXPECT_LT(r.largest, 1e-2) << spin;
+        }
 }
 
 }  // namespace
