@@ -89,7 +89,7 @@ struct JointState {
     float velocity = 0.0f;       // rad/s or m/s
     Vec3 linear_error;           // gap of the locked linear rows, world axes, m
     float angular_error = 0.0f;  // rad
-    Vec3 force, torque;          // mean over the last substep on body B at the anchor, world axes, N and N m
+    Vec3 force, torque;          // mean over the last step on body B at the anchor, world axes, N and N m
     // six_degrees: all coordinates and their rates, those of distance and swing where they are used; else zero
     float coordinates[joint_coordinates]{}, rates[joint_coordinates]{};
 };

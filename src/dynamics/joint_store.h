@@ -48,7 +48,7 @@ struct JointImpulses {
     float motor = 0.0f;
     float spring = 0.0f;
     uint16_t flags = 0;             // the solver's: what part of a substep they stand for
-    Vec3 impulse, angular_impulse;  // all of them, world axes
+    Vec3 impulse, angular_impulse;  // all of them, world axes, the step's mean
     float h = 0.0f;                 // that substep, s; 0: the joint has not been solved yet
 };
 

@@ -27,10 +27,11 @@ struct alignas(64) BodyState {
     float dq[4];         // rotation since the start of the step
 };
 
-// Velocities at the start of the step: never written while it runs. Rows work on changes, so that what contacts add and
+// Velocities at the start of the step: they stay while it runs. Rows work on changes, so that what contacts add and
 // take away again in every substep is not rounded to the precision of a large velocity.
 struct alignas(32) BodyStart {
-    float v[3], unused0;
+    float v[3];
+    int32_t struck;  // in which sweep over the impacts of the step last; those alone write it
     float w[3], unused1;
 };
 

@@ -504,6 +504,41 @@ LENDULET_FORCE_INLINE void apply_normals(const ContactRow<W, P>& c, WideVelocity
     A.w = A.w - IA * turn_a;
 }
 
+// What a contact holds is repeated from one substep to the next, also the blow by which a body was stopped. Where most
+// of it is given back at once, the friction that came with it is too, before the bodies move: else they would turn and
+// slide by it for a substep. Few rows come here, so the bodies are fetched anew. `share`: what is left of it, less 1.
+template <int W, int P>
+[[gnu::noinline]] void let_go_of_friction(ContactRow<W, P>& c, const BodyArrays& bodies, bool fixed_a,
+                                          Wide<float, W> share) {
+    using F = Wide<float, W>;
+    WideVelocity<F> A = load_velocity_at<W>(bodies.state, c.a), B = load_velocity_at<W>(bodies.state, c.b);
+    const SymMat3T<F> IA = load_inverse_inertia_at<W>(bodies.inertia, c.a),
+                      IB = load_inverse_inertia_at<W>(bodies.inertia, c.b);
+    Vec3T<F> dpa, dpb;
+    QuatT<F> dqa, dqb;
+    load_displacement_at<W>(bodies.state, c.a, dpa, dqa);
+    load_displacement_at<W>(bodies.state, c.b, dpb, dqb);
+    const Vec3T<F> moved = dpb - dpa, ra = c.ra + c.follow * moved, rb = c.rb - (splat<F>(1.0f) - c.follow) * moved;
+    // One that has gone on by more than its arm is long past what it struck: relax passes take from it as they may.
+    share = select(dot(moved, moved) <= dot(c.rb, c.rb), share, splat<F>(0.0f));
+    F f1 = share * c.friction.tangent[0], f2 = share * c.friction.tangent[1];
+    c.friction.tangent[0] = c.friction.tangent[0] + f1;
+    c.friction.tangent[1] = c.friction.tangent[1] + f2;
+    Vec3T<F> linear = f1 * c.t1 + f2 * cross(c.n, c.t1), angular = zero_vector<F>();
+    if constexpr (P > 1) {
+        F twist = share * c.friction.twist;
+        c.friction.twist = c.friction.twist + twist;
+        angular = twist * c.n;
+    }
+    B.v = B.v + B.inverse_mass * linear;
+    B.w = B.w + IB * (cross(rb, linear) + angular);
+    store_velocity_at<W>(bodies.state, c.b, B);
+    if (fixed_a) return;
+    A.v = A.v - A.inverse_mass * linear;
+    A.w = A.w - IA * (cross(ra, linear) + angular);
+    store_velocity_at<W>(bodies.state, c.a, A);
+}
+
 // `fixed_a` (A is not moved by constraints) and k.moved are the same for all rows of a loop: branches cost nothing
 // here, copies of the kernel would only take longer to build.
 template <int W, int P, Pass pass>
@@ -557,6 +592,13 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
     }
     store_velocity_at<W>(states, c.b, B);
     if (!fixed_a) store_velocity_at<W>(states, c.a, A);
+    if constexpr (pass == Pass::solve) {
+        F left = c.p[0].impulse, gone = change[0];
+        for (int j = 1; j < P; ++j) left = left + c.p[j].impulse, gone = gone + change[j];
+        auto lets_go = left + gone < splat<F>(0.0f);
+        if (mask_bits(lets_go))
+            let_go_of_friction<W, P>(c, bodies, fixed_a, select(lets_go, gone / (left - gone), splat<F>(0.0f)));
+    }
 }
 
 template <int W, int P, Pass pass>

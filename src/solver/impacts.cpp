@@ -1,9 +1,13 @@
 #include "solver/impacts.h"
 
 #include "lendulet/math.h"
+#include "math/wide/mask.h"
+#include "math/wide/wide.h"
 
 namespace lendulet {
 namespace {
+
+#include "solver/turn.inl"
 
 constexpr int max_sweeps = 8;
 // Points closer than this count as touching already: positions a metre from the body's centre resolve 1e-7 m.
@@ -12,62 +16,101 @@ constexpr float touching = 1e-6f;
 Vec3 load(const float* p) { return {p[0], p[1], p[2]}; }
 void add(float* p, Vec3 v) { p[0] += v.x, p[1] += v.y, p[2] += v.z; }
 
+// A body at some moment of the substep, and the point of it that is hit.
+struct Moment {
+    Quat dq;  // rotation since the start of the step
+    SymMat3 inverse_inertia;
+    Vec3 v, w, L;  // whole velocities
+    Vec3 core;     // of the point, from the centre of mass
+    Vec3 arm;
+};
+
 struct Side {
     BodyState* state;
     BodyInertia* inertia;
     BodyBlock* block;
     int at;  // of the body in its block
-    SymMat3 inverse_inertia;
-    Vec3 v, w, arm;  // whole velocities
+    Vec3 start_w, core0;
+    Moment now;
 
-    Side(SolverBodies& bodies, int32_t i)
+    // `core`: of the point at the start of the step.
+    Side(SolverBodies& bodies, int32_t i, Vec3 core)
         : state(&bodies.state[static_cast<size_t>(i)]),
           inertia(&bodies.inertia[static_cast<size_t>(i)]),
           block(&bodies.blocks[static_cast<size_t>(i / block_bodies)]),
-          at(i % block_bodies) {
+          at(i % block_bodies),
+          core0(core) {
         const float* m = inertia->inverse;
-        inverse_inertia = {m[0], m[1], m[2], m[3], m[4], m[5]};
         const BodyStart& start = bodies.start[static_cast<size_t>(i)];
-        v = load(start.v) + load(state->v);
-        w = load(start.w) + load(state->w);
+        start_w = load(start.w);
+        now.dq = {state->dq[0], state->dq[1], state->dq[2], state->dq[3]};
+        now.inverse_inertia = {m[0], m[1], m[2], m[3], m[4], m[5]};
+        now.v = load(start.v) + load(state->v);
+        now.w = start_w + load(state->w);
+        now.core = rotate(now.dq, core);
     }
-    Quat rotation() const { return {state->dq[0], state->dq[1], state->dq[2], state->dq[3]}; }
     bool movable() const { return state->inverse_mass > 0.0f; }
+    bool turns() const { return length_squared(now.w) > 0.0f; }
     Vec3 acceleration() const { return movable() ? lanes(block->acceleration) : Vec3{}; }
+    // Of the core point: with what turning about the centre of mass adds, also where the axis itself turns.
+    Vec3 core_acceleration() const {
+        Vec3 spin_up = movable() ? now.inverse_inertia * cross(lanes(block->L), now.w) : Vec3{};
+        return acceleration() + (cross(now.w, cross(now.w, now.core)) + cross(spin_up, now.core));
+    }
     Vec3 lanes(const BodyBlock::Lanes* p) const { return {p[0][at], p[1][at], p[2][at]}; }
     void add_lanes(BodyBlock::Lanes* p, Vec3 d) const { p[0][at] += d.x, p[1][at] += d.y, p[2][at] += d.z; }
-    Vec3 velocity() const { return v + cross(w, arm); }
-    // T^-1(u), thesis 3.3.2: how much the point's velocity along u changes per unit impulse.
-    float effectiveness(Vec3 u) const {
-        Vec3 r = cross(arm, u);
-        return state->inverse_mass + dot(r, inverse_inertia * r);
+    Quat orientation(Quat dq) const {
+        const BodyBlock::Lanes* q0 = block->q0;
+        return dq * Quat{q0[0][at], q0[1][at], q0[2][at], q0[3][at]};
+    }
+    SymMat3 inverse_inertia_at(Quat dq) const {
+        return rotate_diagonal(rotation_matrix<float>(QuatT<float>(orientation(dq)), 1.0f),
+                               lanes(block->inverse_inertia));
+    }
+    Quat turned(Quat dq, Vec3 L, Vec3 w, float time) const {
+        return to_quat(turn_at_constant_L<1>(dq, orientation({}), L, lanes(block->inverse_inertia), w,
+                                             block->anisotropy[at], time));
     }
     // What the relax pass changed goes into L by the inertia that it saw, before the body turns.
-    void settle_changes() {
-        const BodyBlock::Lanes* q0 = block->q0;
-        const Quat q = Quat{state->dq[0], state->dq[1], state->dq[2], state->dq[3]} *
-                       Quat{q0[0][at], q0[1][at], q0[2][at], q0[3][at]};
+    Vec3 unsettled() const {
         const Vec3 dw = load(state->w) - lanes(block->w_ref);
-        const Vec3 dL = rotate(q, multiply(lanes(block->inertia), rotate_inverse(q, dw)));
-        add_lanes(block->L, dL);
-        add_lanes(block->dL, dL);
-        for (int k = 0; k < 3; ++k) block->w_ref[k][at] = state->w[k];
+        const Quat q = orientation(now.dq);
+        return rotate(q, multiply(lanes(block->inertia), rotate_inverse(q, dw)));
     }
-    // The impulse acts after `time`: the body is moved so that from then on it is where the new velocity leads.
-    void apply(Vec3 impulse, float time, bool first) {
+    // The body when it has flown on for `time`, as it will: at constant angular momentum.
+    Moment after(float time, bool first) const {
+        Moment m = now;
+        m.L = {};
+        if (movable()) m.L = lanes(block->L) + (first ? Vec3{} : unsettled());
+        if (time > 0.0f) {
+            m.v = now.v + time * acceleration();
+            if (turns()) {
+                m.dq = turned(now.dq, m.L, now.w, time);
+                m.core = rotate(m.dq, core0);
+            }
+        }
+        if (movable()) {
+            if (time > 0.0f) m.inverse_inertia = inverse_inertia_at(m.dq), m.L += time * lanes(block->torque);
+            m.w = m.inverse_inertia * m.L;
+        }
+        return m;
+    }
+    // The impulse acts on the body as it is at `m`, `time` from now: it is put where the new momenta, back from there,
+    // would have had it begin, so that from then on it is where they lead.
+    void apply(const Moment& m, Vec3 impulse, float time, bool first) const {
         if (!movable()) return;
-        if (!first) settle_changes();
-        Vec3 dv = state->inverse_mass * impulse, dL = cross(arm, impulse), dw = inverse_inertia * dL;
-        v += dv;
-        w += dw;
+        const Vec3 dv = state->inverse_mass * impulse, dL = cross(m.arm, impulse);
+        if (!first) {
+            const Vec3 changed = unsettled();
+            add_lanes(block->L, changed);
+            add_lanes(block->dL, changed);
+        }
         add(state->v, dv);
-        add(state->w, dw);
+        add_lanes(block->L, dL);
         // Not a change that the warm start repeats, nor one that the drift expects to go on.
         add_lanes(block->v_ref, dv);
         add_lanes(block->v_start, dv);
-        add_lanes(block->w_ref, dw);
         add_lanes(block->L_start, dL);
-        add_lanes(block->L, dL);
         const Vec3 shift = -time * dv;
         add(state->dp, shift);
         // What contacts hold and the kick will repeat acts at other arms now.
@@ -75,97 +118,171 @@ struct Side {
             const Vec3 held = lanes(block->dv) + (load(state->v) - lanes(block->v_ref));
             add_lanes(block->dL, (-1.0f / state->inverse_mass) * cross(shift, held));
         }
-        Vec3 turn = (-0.5f * time) * dw;
-        Quat q = rotation();
-        Quat d = normalize(Quat{turn.x, turn.y, turn.z, 1.0f} * q);
-        state->dq[0] = d.x, state->dq[1] = d.y, state->dq[2] = d.z, state->dq[3] = d.w;
+        SymMat3 inverse = m.inverse_inertia;
+        if (time > 0.0f) {
+            const Vec3 L = m.L + dL;
+            const Quat d = turned(m.dq, -L, -(inverse * L), time);
+            state->dq[0] = d.x, state->dq[1] = d.y, state->dq[2] = d.z, state->dq[3] = d.w;
+            inverse = inverse_inertia_at(d);
+        }
+        const Vec3 w = inverse * lanes(block->L) - start_w;
+        for (int k = 0; k < 3; ++k) state->w[k] = component(w, k), block->w_ref[k][at] = component(w, k);
         // What changes w from here on is put into L by the inertia of this orientation.
-        const BodyBlock::Lanes* q0 = block->q0;
-        const Quat now = d * Quat{q0[0][at], q0[1][at], q0[2][at], q0[3][at]};
-        inverse_inertia =
-            rotate_diagonal(rotation_matrix<float>(QuatT<float>(now), 1.0f), lanes(block->inverse_inertia));
-        const SymMat3& m = inverse_inertia;
-        const float inverse[6] = {m.xx, m.yy, m.zz, m.xy, m.xz, m.yz};
-        for (int i = 0; i < 6; ++i) inertia->inverse[i] = inverse[i];
+        const float packed[6] = {inverse.xx, inverse.yy, inverse.zz, inverse.xy, inverse.xz, inverse.yz};
+        for (int i = 0; i < 6; ++i) inertia->inverse[i] = packed[i];
     }
 };
 
-// How the velocity along u changes per unit impulse along n.
-float coupling(const Side& s, Vec3 u, Vec3 n) { return dot(cross(s.arm, u), s.inverse_inertia * cross(s.arm, n)); }
+// Both bodies at the moment of the impact.
+struct Meeting {
+    Moment a, b;
+    float inverse_masses;
 
-// The largest impulse f against the slip s along u with which the impact adds no energy. The impulse J along n alone
-// takes `lost` of it, f changes it by K_uu f^2 / 2 - s f - K_un J f: bodies other than balls answer along both to
-// either.
-float elastic_limit(const Side& a, const Side& b, Vec3 n, Vec3 u, float normal_impulse, float slide, float lost) {
-    float effective = a.effectiveness(u) + b.effectiveness(u);
-    float pull = slide + (coupling(a, u, n) + coupling(b, u, n)) * normal_impulse;
-    return (pull + square_root(pull * pull + 2.0f * effective * lost)) / effective;
+    Vec3 slip() const { return (b.v + cross(b.w, b.arm)) - (a.v + cross(a.w, a.arm)); }
+    // T^-1, thesis 3.3.2: how much the relative velocity along u changes per unit impulse along w.
+    float response(Vec3 u, Vec3 w) const {
+        return inverse_masses * dot(u, w) + dot(cross(a.arm, u), a.inverse_inertia * cross(a.arm, w)) +
+               dot(cross(b.arm, u), b.inverse_inertia * cross(b.arm, w));
+    }
+};
+
+// The impulse on B: Newton's restitution along n, and against the slip Coulomb's friction on the whole normal impulse
+// (thesis 3.3.4, magnitudes as in THESIS-NOTES). All three components at once, since bodies other than balls answer to
+// an impulse along n across it too. Newton's law alone would then let some impacts gain energy (Kane, Levinson,
+// "Dynamics", 1985, 5.8): such ones get as much of the impulse as leaves it unchanged.
+Vec3 impact_impulse(const Meeting& m, const ContactRecord& r, Vec3 n, float speed, float tangential_restitution) {
+    const Vec3 x = perpendicular(n), y = cross(n, x), slip = m.slip();
+    const float nn = m.response(n, n), nx = m.response(n, x), ny = m.response(n, y);
+    const float xx = m.response(x, x), xy = m.response(x, y), yy = m.response(y, y);
+    const float rise = (1.0f + r.restitution) * speed;
+    const Vec3 smooth = (rise / nn) * n;
+    const float sx = -(1.0f + tangential_restitution) * dot(slip, x),
+                sy = -(1.0f + tangential_restitution) * dot(slip, y);
+    // What gives B just these changes of velocity, if friction holds.
+    const float c = xx * yy - xy * xy, cx = ny * xy - nx * yy, cy = nx * xy - ny * xx;
+    const float determinant = nn * c + nx * cx + ny * cy;
+    if (!(determinant > 0.0f)) return smooth;
+    const float scale = 1.0f / determinant;
+    float pressed = scale * (c * rise + cx * sx + cy * sy);
+    float fx = scale * (cx * rise + (nn * yy - ny * ny) * sx + (nx * ny - nn * xy) * sy);
+    float fy = scale * (cy * rise + (nx * ny - nn * xy) * sx + (nn * xx - nx * nx) * sy);
+    const float friction = square_root(fx * fx + fy * fy);
+    if (!(friction <= r.static_friction * pressed)) {
+        const float ux = fx / friction, uy = fy / friction;
+        const float answer = nn + r.dynamic_friction * (nx * ux + ny * uy);
+        if (!(answer > 0.1f * nn)) return smooth;
+        pressed = rise / answer;
+        fx = r.dynamic_friction * pressed * ux, fy = r.dynamic_friction * pressed * uy;
+    }
+    const Vec3 impulse = pressed * n + (fx * x + fy * y);
+    const float work = dot(impulse, slip), effort = pressed * (nn * pressed + 2.0f * (nx * fx + ny * fy)) +
+                                                    (xx * fx * fx + 2.0f * xy * fx * fy + yy * fy * fy);
+    if (!(work < 0.0f)) return smooth;
+    return minimum(1.0f, -2.0f * work / effort) * impulse;
+}
+
+// The earlier root of gap + approach t + acceleration t^2 / 2 = 0 in its stable form, and the speed then; speed 0 where
+// there is none.
+struct Impact {
+    float time, speed;
+};
+Impact impact_of(float gap, float approach, float acceleration) {
+    const float discriminant = approach * approach - 2.0f * acceleration * gap;
+    if (!(discriminant > 0.0f)) return {};
+    const float speed = square_root(discriminant);
+    if (!(gap > touching)) return {0.0f, approach < 0.0f ? speed : 0.0f};
+    const float denominator = speed - approach;
+    return denominator > 0.0f ? Impact{2.0f * gap / denominator, speed} : Impact{};
 }
 
 // One point of a manifold; true where it bounced.
 bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPointRecord& point,
-                  float tangential_restitution, const SubstepConstants& k) {
-    Side a(bodies, r.body_a), b(bodies, r.body_b);
-    Vec3 n = load(r.normal), ra0 = load(point.position), offset = load(r.arm_offset), rb0 = ra0 - offset;
-    float half_gap = 0.5f * point.separation;
-    // Separation now: core points turn with their bodies, swept surfaces do not.
-    Vec3 core_a = ra0 - (half_gap + r.radius_a) * n, core_b = rb0 + (half_gap + r.radius_b) * n;
-    Vec3 moved = load(b.state->dp) - load(a.state->dp);
-    Vec3 turned = (rotate(b.rotation(), core_b) - core_b) - (rotate(a.rotation(), core_a) - core_a);
-    float gap = maximum(point.separation + dot(n, moved + turned), 0.0f);
-    // Both get the impulse at the same world point at the time of impact, on the surface of the body that it rides on.
-    Vec3 drift = b.v - a.v;
-    auto place_arms = [&](float time) {
-        Vec3 shift = moved + time * drift, slid = shift - dot(shift, n) * n;
-        b.arm = rb0 + half_gap * n - (1.0f - r.follow) * slid;
-        a.arm = b.arm + offset + shift;
-    };
-    place_arms(0.0f);
-    float approach = dot(b.velocity() - a.velocity(), n), acceleration = dot(b.acceleration() - a.acceleration(), n);
-    // gap + approach t + acceleration t^2 / 2 = 0, the earlier root; stable form.
-    float discriminant = approach * approach - 2.0f * acceleration * gap;
-    if (!(discriminant > 0.0f)) return false;
-    float speed = square_root(discriminant), time = 0.0f;
-    if (gap > touching) {
-        float denominator = speed - approach;
-        if (!(denominator > 0.0f)) return false;
-        time = 2.0f * gap / denominator;
-    } else if (approach >= 0.0f) {
-        return false;
-    }
-    if (time > k.h || speed < k.bounce_speed) return false;
-    place_arms(time);
-    Vec3 relative = b.velocity() - a.velocity();
+                  float tangential_restitution, const SubstepConstants& k, int sweep) {
+    const Vec3 n = load(r.normal), ra0 = load(point.position), offset = load(r.arm_offset);
+    const float half_gap = 0.5f * point.separation;
+    // Core points turn with their bodies, swept surfaces do not.
+    Side a(bodies, r.body_a, ra0 - (half_gap + r.radius_a) * n);
+    Side b(bodies, r.body_b, ra0 - offset + (half_gap + r.radius_b) * n);
+    const Vec3 apart = offset + (load(b.state->dp) - load(a.state->dp));
+    const Vec3 turned = (b.now.core - b.core0) - (a.now.core - a.core0);
+    const float gap = maximum(point.separation + dot(n, (apart - offset) + turned), 0.0f);
+    const Vec3 v = (b.now.v + cross(b.now.w, b.now.core)) - (a.now.v + cross(a.now.w, a.now.core));
+    const Impact first = impact_of(gap, dot(v, n), dot(b.core_acceleration() - a.core_acceleration(), n));
+    if (first.time > k.h || !(first.speed >= k.bounce_speed)) return false;
 
-    float normal_impulse = (1.0f + r.restitution) * speed / (a.effectiveness(n) + b.effectiveness(n));
-    Vec3 impulse = normal_impulse * n, slip = relative - dot(relative, n) * n;
-    float slide = length(slip);
-    if (slide > 1e-9f) {
-        Vec3 u = (1.0f / slide) * slip;
-        float stopping = (1.0f + tangential_restitution) * slide / (a.effectiveness(u) + b.effectiveness(u));
-        // Static and sliding friction on the whole normal impulse (thesis 3.3.4, magnitudes as in THESIS-NOTES).
-        float friction =
-            stopping <= r.static_friction * normal_impulse ? stopping : r.dynamic_friction * normal_impulse;
-        float lost = 0.5f * (1.0f - r.restitution) * speed * normal_impulse;
-        impulse -= minimum(friction, elastic_limit(a, b, n, u, normal_impulse, slide, lost)) * u;
+    float time = first.time;
+    Meeting m;
+    m.inverse_masses = a.state->inverse_mass + b.state->inverse_mass;
+    Vec3 between;  // from A's centre of mass to B's
+    for (int times = 0;; ++times) {
+        m.a = a.after(time, k.first);
+        m.b = b.after(time, k.first);
+        const Vec3 drift = b.now.v - a.now.v, acceleration = b.acceleration() - a.acceleration();
+        between = apart + (time * drift + (0.5f * time * time) * acceleration);
+        // Both get the impulse at one world point, on the surface of the body that it rides on.
+        const Vec3 on_b = m.b.core - r.radius_b * n, from_a = on_b + between - (m.a.core + r.radius_a * n);
+        m.b.arm = on_b - (1.0f - r.follow) * (from_a - dot(from_a, n) * n);
+        m.a.arm = m.b.arm + between;
+        // What turns follows no parabola: twice more by Newton's rule.
+        const float off = dot(from_a, n), approach = dot(m.slip(), n);
+        const bool turning = time > 0.0f && (a.turns() || b.turns());
+        if (!turning || times == 2 || !(absolute(off) > touching) || !(approach < 0.0f)) break;
+        time = maximum(time - off / approach, 0.0f);
+        if (time > k.h) return false;
     }
-    a.apply(-impulse, time, k.first);
-    b.apply(impulse, time, k.first);
+    const float speed = -dot(m.slip(), n);
+    if (!(speed >= k.bounce_speed)) return false;
+
+    const Vec3 impulse = impact_impulse(m, r, n, speed, tangential_restitution);
+    a.apply(m.a, -impulse, time, k.first);
+    b.apply(m.b, impulse, time, k.first);
+    if (a.movable()) bodies.start[static_cast<size_t>(r.body_a)].struck = sweep;
+    if (b.movable()) bodies.start[static_cast<size_t>(r.body_b)].struck = sweep;
     return true;
+}
+
+// Whether no point of a manifold can approach as fast as bounces do: most have bodies that hardly move.
+bool too_slow(const SolverBodies& bodies, const ContactRecord& r, const SubstepConstants& k) {
+    float fastest = 0.0f;
+    for (int side = 0; side < 2; ++side) {
+        const auto body = static_cast<size_t>(side == 0 ? r.body_a : r.body_b);
+        const BodyState& state = bodies.state[body];
+        const BodyStart& start = bodies.start[body];
+        const float v = length(load(start.v) + load(state.v)), w = length(load(start.w) + load(state.w));
+        if (v + w == 0.0f && !(state.inverse_mass > 0.0f)) continue;
+        float reach = 0.0f;
+        for (int j = 0; j < r.point_count; ++j) {
+            const Vec3 arm = load(r.points[j].position) - (side == 0 ? Vec3{} : load(r.arm_offset));
+            reach = maximum(reach, length(arm) + absolute(r.points[j].separation) + r.radius_a + r.radius_b);
+        }
+        const BodyBlock& block = bodies.blocks[body / block_bodies];
+        const size_t at = body % block_bodies;
+        const Vec3 push{block.acceleration[0][at], block.acceleration[1][at], block.acceleration[2][at]};
+        const float pull = state.inverse_mass > 0.0f ? length(push) : 0.0f;
+        fastest += v + w * reach + k.h * (pull + 2.0f * w * w * reach * maximum(block.anisotropy[at], 1.0f));
+    }
+    return fastest < k.bounce_speed;
 }
 
 }  // namespace
 
 bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, BouncingList bouncing,
-                     const SubstepConstants& k) {
+                     const SubstepConstants& k, int substep) {
+    const int first_sweep = 1 + max_sweeps * substep;
     bool any = false;
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         bool bounced = false;
+        const int number = first_sweep + sweep;
         for (int i = 0; i < bouncing.count; ++i) {
             const uint32_t record = bouncing.list[i];
             const ContactRecord& r = records[record];
+            // Nothing has changed where nobody was struck in the last sweep or in this one.
+            const BodyStart &a = bodies.start[static_cast<size_t>(r.body_a)],
+                            &b = bodies.start[static_cast<size_t>(r.body_b)];
+            if (sweep > 0 && a.struck < number - 1 && b.struck < number - 1) continue;
+            if (too_slow(bodies, r, k)) continue;
             const float back = bouncing.extras ? bouncing.extras[record].tangential_restitution : 0.0f;
-            for (int j = 0; j < r.point_count; ++j) bounced |= bounce_point(bodies, r, r.points[j], back, k);
+            for (int j = 0; j < r.point_count; ++j) bounced |= bounce_point(bodies, r, r.points[j], back, k, number);
         }
         any |= bounced;
         if (!bounced) break;

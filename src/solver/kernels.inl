@@ -14,6 +14,8 @@ namespace {
 
 #include "solver/rolling.inl"
 
+#include "solver/turn.inl"
+
 #include "solver/body_rows.inl"
 
 template <int W>

@@ -144,7 +144,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
             if (!relaxed)
                 for_each_tile(tasks, range, [&](int tile, BodyRange) { pass_tile(tile, bodies, before, relax); });
             relaxed = true;
-            k.moved = resolve_impacts(bodies, records, {bouncing_.data(), bouncing_.count(), extras_}, k);
+            k.moved = resolve_impacts(bodies, records, {bouncing_.data(), bouncing_.count(), extras_}, k, substep);
         }
         for_each_tile(tasks, range, [&](int tile, BodyRange r) {
             if (!relaxed) pass_tile(tile, bodies, before, relax);

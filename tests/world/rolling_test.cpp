@@ -161,12 +161,11 @@ World bouncing_boxes(float shift) {
     return world;
 }
 
-// They gain no energy but what turning them to the moment of an impact costs or gives: of ten seconds the largest rise
-// in a step is 0.36 % in the mean of such starts, and differs from one to the next. Were their friction not cut to what
-// adds none, it would be 4 %.
+// They gain no energy in an impact. Rarely one is found too late and its overlap is undone, which costs or gives a
+// little: in one of ten starts, of ten seconds each, once.
 TEST(TangentialRestitution, AddsNoEnergy) {
     constexpr int starts = 10;
-    double largest_rises = 0.0;
+    int rises = 0;
     for (int k = 0; k < starts; ++k) {
         World world = bouncing_boxes(1e-3f * static_cast<float>(k));
         const double start = world.kinetic_energy();
@@ -175,14 +174,14 @@ TEST(TangentialRestitution, AddsNoEnergy) {
             world.update(dt).value();
             const double now = world.kinetic_energy();
             largest_rise = std::max(largest_rise, now / energy - 1.0);
+            rises += now > energy * (1.0 + 2e-6);
             energy = now;
         }
-        EXPECT_LT(largest_rise, 1e-2) << "start " << k;
+        EXPECT_LT(largest_rise, 1e-3) << "start " << k;
         EXPECT_GT(energy, 1.0);
         EXPECT_LT(energy, start) << "start " << k;
-        largest_rises += largest_rise;
     }
-    EXPECT_LT(largest_rises / starts, 5e-3);
+    EXPECT_LE(rises, 2);
 }
 
 TEST(RollingFriction, RefusesWhatIsNoCoefficient) {

@@ -65,10 +65,10 @@ double slider_crank_energy(double phi) {
                   rod_inertia * psi_rate * psi_rate + slider * slider);
 }
 
-// By virtual work the motor's torque is dE / d(phi) at constant speed.
-double slider_crank_torque(double phi) {
-    const double e = 1e-3;
-    return (slider_crank_energy(phi + e) - slider_crank_energy(phi - e)) / (2.0 * e);
+// By virtual work the motor's torque is dE / d(phi) at constant speed, and its mean over a turn from `from` to `to` the
+// quotient of differences.
+double slider_crank_torque(double from, double to) {
+    return (slider_crank_energy(to) - slider_crank_energy(from)) / (to - from);
 }
 
 void slider_crank(const Setting& s, Figures& out) {
@@ -88,17 +88,19 @@ void slider_crank(const Setting& s, Figures& out) {
              &torque = out.quantity("slider-crank: torque off virtual work / greatest", within(0.01));
     Curve& curve = out.curve("torque that drives a slider-crank", "crank, turns", "torque, N m");
     double greatest = 0.0;
-    for (int i = 0; i < 720; ++i) greatest = std::fmax(greatest, std::fabs(slider_crank_torque(i * pi_d / 360.0)));
-    // Small loops take four times the substeps, and the impulse that a step ends with stands for half of the last one.
-    const double report_age = 0.25 * static_cast<double>(s.dt()) / (4 * s.solver_steps());
+    for (int i = 0; i < 720; ++i) {
+        const double at = i * pi_d / 360.0;
+        greatest = std::fmax(greatest, std::fabs(slider_crank_torque(at - 1e-3, at + 1e-3)));
+    }
+    const double turn = drive * static_cast<double>(s.dt());
     for (int i = 1, steps = s.steps(60.0 / s.scale); i <= steps; ++i) {
         advance(world, 1, s.dt());
-        double phi = angle_of(world, s.frame, linkage.crank), middle = phi - drive * report_age;
+        double phi = angle_of(world, s.frame, linkage.crank);
         gap.add(linkage.largest_gap());
         where.add(place(world, s.frame, slider).x, slider_place(phi));
         speed.add(spin(world, s.frame, linkage.crank).z, drive);
         double driven = s.frame.local_direction(world.joint(linkage.joints[0]).torque).z;
-        double exact = slider_crank_torque(middle);
+        double exact = slider_crank_torque(phi - turn, phi);
         torque.add((driven - exact) / greatest);
         if (i * drive * static_cast<double>(s.dt()) < 2.0 * pi_d)
             curve.add(i * drive * static_cast<double>(s.dt()) / (2.0 * pi_d), driven, exact);

@@ -49,7 +49,7 @@ struct alignas(64) JointRecord {
     float motor, spring;
     int32_t axes;  // six_degrees: its JointAxesRecord
     float unused1;
-    float impulse[3], unused2;          // result: all of it on B in the last substep, world axes, N s ...
+    float impulse[3], unused2;          // result: all of it on B in the whole step, world axes, N s ...
     float angular_impulse[3], unused3;  // ... and N m s, about the anchor
 };
 static_assert(sizeof(JointRecord) == 192);

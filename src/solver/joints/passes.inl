@@ -310,6 +310,14 @@ LENDULET_FORCE_INLINE JointPair<Wide<float, W>> load_pair(const JointRow<W, C>& 
     return p;
 }
 
+// Forces are reported as means over the step: its last impulse alone would be ahead of the motion or behind it.
+template <int W, JointClass C>
+LENDULET_FORCE_INLINE void add_to_sums(JointRow<W, C>& c) {
+    if constexpr (JointShape<C>::along) c.linear_sum = c.linear_sum + c.linear;
+    else c.linear_sum = c.linear_sum + Vec3T<Wide<float, W>>{c.impulse[0], c.impulse[1], c.impulse[2]};
+    if constexpr (JointShape<C>::directions > 0) c.angular_sum = c.angular_sum + c.angular;
+}
+
 template <int W, JointClass C, bool biased>
 LENDULET_FORCE_INLINE void joint_pass(JointRow<W, C>& c, const JointGroup& g, SolverBodies& bodies,
                                       const JointConstants& k) {
@@ -337,6 +345,7 @@ LENDULET_FORCE_INLINE void joint_pass(JointRow<W, C>& c, const JointGroup& g, So
     c.turn_b = c.turn_b + (cross(o.rb, linear) + angular);
     if constexpr (S::directions > 0) c.angular = c.angular + angular;
     if constexpr (S::along) c.linear = c.linear + linear;
+    if (!biased || g.split) add_to_sums<W, C>(c);  // what the row holds now has acted
     if (g.moved_a) store_velocity_at<W>(bodies.state.data(), c.a, pair.A);
     if (g.moved_b) store_velocity_at<W>(bodies.state.data(), c.b, pair.B);
 }

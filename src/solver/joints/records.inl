@@ -151,7 +151,8 @@ LENDULET_FORCE_INLINE void prepare_joint(JointRow<W, C>& c, const JointFrames<W,
     if constexpr (S::six)
         for (auto& row : c.row) row.spring = splat<F>(scale) * row.spring, row.spring_sum = row.spring;
     c.turn_a = c.turn_b = zero_vector<F>();
-    if constexpr (S::directions > 0) c.angular = zero_vector<F>();
+    c.linear_sum = zero_vector<F>();
+    if constexpr (S::directions > 0) c.angular = c.angular_sum = zero_vector<F>();
     if constexpr (S::along) c.linear = zero_vector<F>();
     if (scale != 1.0f) {
         for (F& x : c.impulse) x = splat<F>(scale) * x;
@@ -201,13 +202,12 @@ void store_lanes(const Wide<float, W> (&quads)[5][4], const uint32_t* order, int
     }
 }
 
-// The last impulses of a split joint stand for half a substep: what is reported is twice as much.
 template <int W, JointClass C>
 void store_joints(const JointGroup& g, JointRecord* records, int begin, int end) {
     using F = Wide<float, W>;
     using S = JointShape<C>;
     constexpr int stride = sizeof(JointRecord) / sizeof(float);
-    const F zero = splat<F>(0.0f), whole = splat<F>(g.split ? 2.0f : 1.0f);
+    const F zero = splat<F>(0.0f);
     auto* rows = reinterpret_cast<JointRow<W, C>*>(g.rows);
     for (int b = begin; b < end; ++b) {
         const JointRow<W, C>& c = rows[b];
@@ -220,11 +220,8 @@ void store_joints(const JointGroup& g, JointRecord* records, int begin, int end)
             if constexpr (S::bounded > 1) quads[1][3] = c.row[1].limit;
         }
         if constexpr (S::driven) quads[2][0] = c.motor, quads[2][1] = c.spring;
-        Vec3T<F> linear, angular = zero_vector<F>();
-        if constexpr (S::along) linear = c.linear;
-        else linear = {c.impulse[0], c.impulse[1], c.impulse[2]};
-        if constexpr (S::directions > 0) angular = c.angular;
-        linear = whole * linear, angular = whole * angular;
+        Vec3T<F> linear = c.linear_sum, angular = zero_vector<F>();
+        if constexpr (S::directions > 0) angular = c.angular_sum;
         quads[3][0] = linear.x, quads[3][1] = linear.y, quads[3][2] = linear.z, quads[3][3] = zero;
         quads[4][0] = angular.x, quads[4][1] = angular.y, quads[4][2] = angular.z, quads[4][3] = zero;
         int last = g.count - b * W;

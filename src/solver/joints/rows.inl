@@ -37,6 +37,7 @@ struct JointAxes {
     using F = Wide<float, W>;
     QuatT<F> frame_a, frame_b;  // joint frame on each body at the start of the step, world
     Vec3T<F> angular;           // angular impulse on B that is in the bodies' velocities
+    Vec3T<F> angular_sum;       // and all of it since the start of the step
 };
 template <int W>
 struct JointTravel {
@@ -90,12 +91,13 @@ struct alignas(64) JointRow
     Vec3T<F> ra0, rb0, gap0;               // arms of the two anchors and the way from A's to B's, ...
     Vec3T<F> start_v, start_wa, start_wb;  // ... velocity of B relative to A and spins, at the start of the step
     Vec3T<F> turn_a, turn_b;               // angular impulses about their centres that both bodies' velocities hold
+    Vec3T<F> linear_sum;                   // impulse on B since the start of the step
     F impulse[JointShape<C>::locked];
     F bias, leak;  // shares of the gap undone and of the impulse given up in a biased pass
     F relaxation;  // share of its solution that the joint takes in a pass
     F share_a;     // share of a gap between the anchors by which the shared point is off A's
 };
-static_assert(sizeof(JointRow<16, JointClass::ball>) == 16 * 132);
+static_assert(sizeof(JointRow<16, JointClass::ball>) == 16 * 144);
 
 // Joint frames on the bodies as the records give them.
 template <int W, JointClass C>

@@ -126,9 +126,11 @@ JointImpulses joint_impulses(const WorldData& world, uint32_t slot) {
     i.motor = r.motor;
     i.spring = r.spring;
     i.flags = r.flags;
-    i.impulse = {r.impulse[0], r.impulse[1], r.impulse[2]};
-    i.angular_impulse = {r.angular_impulse[0], r.angular_impulse[1], r.angular_impulse[2]};
-    i.h = world.joints_h * substep_share(world, world.joints.record[slot]);
+    const float share = substep_share(world, world.joints.record[slot]);
+    const float mean = share / static_cast<float>(world.config.solver_steps);
+    i.impulse = mean * Vec3{r.impulse[0], r.impulse[1], r.impulse[2]};
+    i.angular_impulse = mean * Vec3{r.angular_impulse[0], r.angular_impulse[1], r.angular_impulse[2]};
+    i.h = world.joints_h * share;
     return i;
 }
 
