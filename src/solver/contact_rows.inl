@@ -492,8 +492,7 @@ template <int W, int P>
     QuatT<F> dqa, dqb;
     load_displacement_at<W>(bodies.state, c.a, dpa, dqa);
     load_displacement_at<W>(bodies.state, c.b, dpb, dqb);
-    const Vec3T<F> moved = dpb - dpa, ra = c.ra + c.follow * moved,
-                   rb = c.rb - (splat<F>(1.0f) - c.follow) * moved;
+    const Vec3T<F> moved = dpb - dpa, ra = c.ra + c.follow * moved, rb = c.rb - (splat<F>(1.0f) - c.follow) * moved;
     F f1 = share * c.friction.tangent[0], f2 = share * c.friction.tangent[1];
     c.friction.tangent[0] = c.friction.tangent[0] + f1;
     c.friction.tangent[1] = c.friction.tangent[1] + f2;
