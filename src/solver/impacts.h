@@ -16,11 +16,11 @@ struct BouncingList {
     const ContactExtra* extras;
 };
 
-// Finds the points that in this substep, the given one of the step, will meet faster than k.bounce_speed, gives both bodies Newton's impulse
-// with Coulomb friction on the whole of it (restitution included; with tangential restitution it may turn the slip
-// round), and shifts them so that it acted at the time of
-// impact. Sweeps over the list until no point approaches, at most 8 times, so that
-// impulses travel through touching bodies one by one, as in a cradle. Returns whether any body was displaced.
+// Finds the points that in this substep, the given one of the step, will meet faster than k.bounce_speed, gives both
+// bodies Newton's impulse with Coulomb friction on the whole of it (restitution included; with tangential restitution
+// it may turn the slip round), and shifts them so that it acted at the time of impact. Sweeps over the list until no
+// point approaches, at most 8 times, so that impulses travel through touching bodies one by one, as in a cradle.
+// Returns whether any body was displaced.
 bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, BouncingList bouncing,
                      const SubstepConstants& k, int substep);
 

@@ -89,7 +89,8 @@ TEST(Impacts, OnAFloorAddNoEnergy) {
     for (const Shape& shape : shapes)
         for (float spin : {0.0f, 10.0f, 100.0f})
             for (const Surface& s : {Surface{0.0f, 1.0f, 0.0f}, {0.6f, 1.0f, 0.0f}, {0.6f, 1.0f, 1.0f}})
-                EXPECT_LT(largest_rise(shape, s, spin, false), 1e-5) << spin << " " << s.friction << " " << s.tangential;
+                EXPECT_LT(largest_rise(shape, s, spin, false), 1e-5)
+                    << spin << " " << s.friction << " " << s.tangential;
 }
 
 TEST(Impacts, OfBallsAndCapsulesAddNoEnergy) {
