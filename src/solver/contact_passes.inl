@@ -1,0 +1,287 @@
+// What passes do with contact rows: normals, friction, masses of bodies that have turned. Part of kernels.inl, after
+// contact_rows.inl.
+
+enum class Pass { warm_start, solve, relax };
+
+// Friction of the whole patch as one block (t1, t2, twist), limited by the round Coulomb cone on the total normal
+// impulse: it sticks while the impulse that stops the sliding is within the static cone, and slides with the dynamic
+// coefficient otherwise (thesis 3.3.4 with THESIS-NOTES). Returns the impulse on B and the angular impulse about n.
+template <int W, int P>
+LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float, W>> t2, Vec3T<Wide<float, W>> slip,
+                                          Vec3T<Wide<float, W>> spin, Vec3T<Wide<float, W>>& linear,
+                                          Vec3T<Wide<float, W>>& angular) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
+    F total = c.p[0].impulse, lever = zero, twist = zero;
+    F x = dot(slip, c.t1), y = dot(slip, t2), f1, f2, ft = zero;
+    const F* m = c.friction.mass;
+    if constexpr (P > 1) {
+        lever = zero;
+        total = zero;
+        for (int j = 0; j < P; ++j) {
+            total = total + c.p[j].impulse;
+            lever = lever + c.p[j].impulse * square_root(c.p[j].u * c.p[j].u + c.p[j].v * c.p[j].v);
+        }
+        twist = dot(c.n, spin);
+        f1 = c.friction.tangent[0] - (m[0] * x + m[1] * y + m[2] * twist);
+        f2 = c.friction.tangent[1] - (m[1] * x + m[3] * y + m[4] * twist);
+        ft = c.friction.twist - (m[2] * x + m[4] * y + m[5] * twist);
+    } else {
+        f1 = c.friction.tangent[0] - (m[0] * x + m[1] * y);
+        f2 = c.friction.tangent[1] - (m[1] * x + m[2] * y);
+    }
+    F sticking = c.static_friction * total, sliding = c.dynamic_friction * total;
+    F size2 = f1 * f1 + f2 * f2;
+    F scale = select(size2 > sticking * sticking, sliding / maximum(square_root(size2), splat<F>(1e-30f)), one);
+    f1 = scale * f1;
+    f2 = scale * f2;
+    linear = (f1 - c.friction.tangent[0]) * c.t1 + (f2 - c.friction.tangent[1]) * t2;
+    c.friction.tangent[0] = f1;
+    c.friction.tangent[1] = f2;
+    angular = zero_vector<F>();
+    if constexpr (P > 1) {
+        F hold = c.static_friction * lever, slide = c.dynamic_friction * lever;
+        ft = select(absolute(ft) > hold, select(ft > zero, slide, zero - slide), ft);
+        angular = (ft - c.friction.twist) * c.n;
+        c.friction.twist = ft;
+    }
+}
+
+// Arms of the centre now, and the relative velocity there that was left from the start of the step.
+template <class F>
+struct MovedArms {
+    Vec3T<F> ra, rb, start_slip;
+    F turned;  // square of the sine of half the angle by which one of the bodies has turned, at least
+};
+
+// Separations, levers and arms from the two bodies' displacements since the start of the step.
+template <int W, int P>
+LENDULET_FORCE_INLINE MovedArms<Wide<float, W>> update_displacement(ContactRow<W, P>& c, const BodyState* states,
+                                                                    Vec3T<Wide<float, W>> t2) {
+    using F = Wide<float, W>;
+    Vec3T<F> dpa, dpb;
+    QuatT<F> dqa, dqb;
+    load_displacement_at<W>(states, c.a, dpa, dqa);
+    load_displacement_at<W>(states, c.b, dpb, dqb);
+    Vec3T<F> moved = dpb - dpa, ea = turned_back(dqa, c.n), eb = turned_back(dqb, c.n);
+    c.shift = dot(c.n, moved) + dot(eb, c.rb + c.radius_b * c.n) - dot(ea, c.ra - c.radius_a * c.n);
+    if constexpr (P > 1) {
+        Vec3T<F> e = eb - ea;
+        c.turn.shift[0] = dot(e, c.t1);
+        c.turn.shift[1] = dot(e, t2);
+    }
+    MovedArms<F> now{
+        c.ra + c.follow * moved, c.rb - (splat<F>(1.0f) - c.follow) * moved, c.start_slip - cross(c.start_turn, moved),
+        maximum(dqa.x * dqa.x + dqa.y * dqa.y + dqa.z * dqa.z, dqb.x * dqb.x + dqb.y * dqb.y + dqb.z * dqb.z)};
+    c.lever_a = cross(now.ra, c.n);
+    c.lever_b = cross(now.rb, c.n);
+    c.start_approach = dot(c.n, now.start_slip);
+    return now;
+}
+
+// From here on, see MovedArms::turned, a row gets new masses in every substep: 0.2 rad.
+inline constexpr float far_turn = 0.01f;
+
+// A slender body that has turned answers many times as much to an impulse, and rows that take it for what it was at the
+// start of the step would answer ever more to what they did themselves: from twice on they gain energy without end. In
+// the lanes that `far` holds for; few rows ever come here.
+template <int W, int P, class Mask>
+[[gnu::noinline]] void renew_masses(ContactRow<W, P>& c, const MovedArms<Wide<float, W>>& now,
+                                    const SymMat3T<Wide<float, W>>& IA, const SymMat3T<Wide<float, W>>& IB,
+                                    Wide<float, W> inverse_masses, Mask far) {
+    ContactRow<W, P> renewed = c;
+    prepare_normals<W, P>(renewed, now.ra, now.rb, IA, IB, inverse_masses);
+    prepare_friction<W, P>(renewed, now.ra, now.rb, IA, IB, inverse_masses);
+    for (int j = 0; j < P; ++j) c.p[j].mass = select(far, renewed.p[j].mass, c.p[j].mass);
+    if constexpr (P > 1)
+        for (int i = 0; i < P * (P - 1) / 2; ++i)
+            c.turn.coupling[i] = select(far, renewed.turn.coupling[i], c.turn.coupling[i]);
+    constexpr int masses = sizeof(c.friction.mass) / sizeof(c.friction.mass[0]);
+    for (int i = 0; i < masses; ++i) c.friction.mass[i] = select(far, renewed.friction.mass[i], c.friction.mass[i]);
+}
+
+// One sweep over the points; returns what it added to the impulses: `biased` with the terms that undo overlap.
+template <int W, int P, bool biased>
+LENDULET_FORCE_INLINE void sweep_normals(ContactRow<W, P>& c, const WideVelocity<Wide<float, W>>& A,
+                                         const WideVelocity<Wide<float, W>>& B, Vec3T<Wide<float, W>> t2,
+                                         const SubstepConstants& k, Wide<float, W> change[P]) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
+    F inverse_h = splat<F>(k.inverse_h), keep = splat<F>(biased ? 1.0f - k.leak : 1.0f);
+    F rate = splat<F>(biased ? k.bias_rate : 0.0f), push = zero - c.push_speed;
+    F bounce = splat<F>(k.bounce_speed) * c.bounce_speed;
+    F g0 = (c.start_approach + dot(c.n, B.v - A.v)) + (dot(c.lever_b, B.w) - dot(c.lever_a, A.w));
+    F g1 = zero, g2 = zero;
+    if constexpr (P > 1) {
+        Vec3T<F> spin = c.turn.start_spin + (B.w - A.w);
+        g1 = zero - dot(spin, t2), g2 = dot(spin, c.t1);
+    }
+    for (int j = 0; j < P; ++j) {
+        auto& p = c.p[j];
+        F s = p.separation + c.shift, vn = g0;
+        if constexpr (P > 1) {
+            s = s + (p.u * c.turn.shift[0] + p.v * c.turn.shift[1]);
+            vn = vn + (p.u * g1 + p.v * g2);
+            for (int i = 0; i < j; ++i) vn = vn + c.turn.coupling[j * (j - 1) / 2 + i] * change[i];
+        }
+        auto apart = s > zero;
+        F kept = p.impulse, bias;
+        if constexpr (biased) {
+            bias = select(apart, s * inverse_h, maximum(rate * s, push));
+            kept = select(apart, one, keep) * kept;
+        } else {
+            bias = select(apart, s * inverse_h, zero);
+        }
+        F next = maximum((kept - p.mass * bias) - p.mass * vn, zero);
+        next = select(vn < bounce, zero, next);  // left to the impact stage, which knows the time of impact
+        change[j] = next - p.impulse;
+        p.impulse = next;
+    }
+}
+
+// All that the row holds, on B.
+template <int W, int P>
+LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> held_impulse(const ContactRow<W, P>& c, Vec3T<Wide<float, W>> t2) {
+    Wide<float, W> pressed = c.p[0].impulse;
+    for (int j = 1; j < P; ++j) pressed = pressed + c.p[j].impulse;
+    return pressed * c.n + (c.friction.tangent[0] * c.t1 + c.friction.tangent[1] * t2);
+}
+
+// Adds impulses of the points along n to the bodies, and what is overdue.
+template <int W, int P, bool overdue>
+LENDULET_FORCE_INLINE void apply_normals(const ContactRow<W, P>& c, WideVelocity<Wide<float, W>>& A,
+                                         WideVelocity<Wide<float, W>>& B, const SymMat3T<Wide<float, W>>& IA,
+                                         const SymMat3T<Wide<float, W>>& IB, Vec3T<Wide<float, W>> t2,
+                                         const Wide<float, W> change[P]) {
+    using F = Wide<float, W>;
+    F total = change[0];
+    Vec3T<F> turn_a, turn_b;
+    if constexpr (P > 1) {
+        F moment1 = change[0] * c.p[0].u, moment2 = change[0] * c.p[0].v;
+        for (int j = 1; j < P; ++j) {
+            total = total + change[j];
+            moment1 = moment1 + change[j] * c.p[j].u;
+            moment2 = moment2 + change[j] * c.p[j].v;
+        }
+        Vec3T<F> turn = moment2 * c.t1 - moment1 * t2;
+        turn_a = total * c.lever_a + turn;
+        turn_b = total * c.lever_b + turn;
+    } else {
+        turn_a = total * c.lever_a;
+        turn_b = total * c.lever_b;
+    }
+    if constexpr (overdue) {
+        Vec3T<F> share = c.follow * c.overdue;
+        turn_a = turn_a - share;
+        turn_b = turn_b + (c.overdue - share);
+    }
+    Vec3T<F> push = total * c.n;
+    B.v = B.v + B.inverse_mass * push;
+    B.w = B.w + IB * turn_b;
+    A.v = A.v - A.inverse_mass * push;
+    A.w = A.w - IA * turn_a;
+}
+
+// What a contact holds is repeated from one substep to the next, also the blow by which a body was stopped. Where most
+// of it is given back at once, the friction that came with it is too, before the bodies move: else they would turn and
+// slide by it for a substep. Few rows come here, so the bodies are fetched anew. `share`: what is left of it, less 1.
+template <int W, int P>
+[[gnu::noinline]] void let_go_of_friction(ContactRow<W, P>& c, const BodyArrays& bodies, bool fixed_a,
+                                          Wide<float, W> share) {
+    using F = Wide<float, W>;
+    WideVelocity<F> A = load_velocity_at<W>(bodies.state, c.a), B = load_velocity_at<W>(bodies.state, c.b);
+    const SymMat3T<F> IA = load_inverse_inertia_at<W>(bodies.inertia, c.a),
+                      IB = load_inverse_inertia_at<W>(bodies.inertia, c.b);
+    Vec3T<F> dpa, dpb;
+    QuatT<F> dqa, dqb;
+    load_displacement_at<W>(bodies.state, c.a, dpa, dqa);
+    load_displacement_at<W>(bodies.state, c.b, dpb, dqb);
+    const Vec3T<F> moved = dpb - dpa, ra = c.ra + c.follow * moved, rb = c.rb - (splat<F>(1.0f) - c.follow) * moved;
+    // One that has gone on by more than its arm is long past what it struck: relax passes take from it as they may.
+    share = select(dot(moved, moved) <= dot(c.rb, c.rb), share, splat<F>(0.0f));
+    F f1 = share * c.friction.tangent[0], f2 = share * c.friction.tangent[1];
+    c.friction.tangent[0] = c.friction.tangent[0] + f1;
+    c.friction.tangent[1] = c.friction.tangent[1] + f2;
+    Vec3T<F> linear = f1 * c.t1 + f2 * cross(c.n, c.t1), angular = zero_vector<F>();
+    if constexpr (P > 1) {
+        F twist = share * c.friction.twist;
+        c.friction.twist = c.friction.twist + twist;
+        angular = twist * c.n;
+    }
+    B.v = B.v + B.inverse_mass * linear;
+    B.w = B.w + IB * (cross(rb, linear) + angular);
+    store_velocity_at<W>(bodies.state, c.b, B);
+    if (fixed_a) return;
+    A.v = A.v - A.inverse_mass * linear;
+    A.w = A.w - IA * (cross(ra, linear) + angular);
+    store_velocity_at<W>(bodies.state, c.a, A);
+}
+
+// `fixed_a` (A is not moved by constraints) and k.moved are the same for all rows of a loop: branches cost nothing
+// here, copies of the kernel would only take longer to build.
+template <int W, int P, Pass pass>
+LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& bodies, const SubstepConstants& k,
+                                        bool fixed_a) {
+    using F = Wide<float, W>;
+    BodyState* states = bodies.state;
+    Vec3T<F> drift_a = zero_vector<F>(), drift_b;
+    WideVelocity<F> A{}, B = load_velocity_at<W>(states, c.b);
+    SymMat3T<F> IA{}, IB = load_inverse_inertia_at<W>(bodies.inertia, c.b, B, drift_b);
+    if (!fixed_a) {
+        A = load_velocity_at<W>(states, c.a);
+        IA = load_inverse_inertia_at<W>(bodies.inertia, c.a, A, drift_a);
+    }
+    Vec3T<F> t2 = cross(c.n, c.t1), linear, angular;
+    F change[P];
+    if constexpr (pass == Pass::warm_start) {
+        MovedArms<F> now{c.ra, c.rb, c.start_slip, splat<F>(0.0f)};
+        if (k.moved) now = update_displacement<W, P>(c, states, t2);
+        for (int j = 0; j < P; ++j) change[j] = c.p[j].impulse;
+        apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);
+        linear = c.friction.tangent[0] * c.t1 + c.friction.tangent[1] * t2;
+        angular = zero_vector<F>();
+        if constexpr (P > 1) angular = c.friction.twist * c.n;
+        B.w = B.w + IB * (cross(now.rb, linear) + angular);
+        A.w = A.w - IA * (cross(now.ra, linear) + angular);
+    } else if constexpr (pass == Pass::solve) {
+        if (k.moved) update_displacement<W, P>(c, states, t2);
+        sweep_normals<W, P, true>(c, A, B, t2, k, change);
+        apply_normals<W, P, true>(c, A, B, IA, IB, t2, change);
+    } else {
+        if (!fixed_a) {
+            Vec3T<F> drift = drift_b - drift_a, moment = cross(held_impulse<W, P>(c, t2), drift);
+            auto moving = dot(drift, drift) > splat<F>(k.still_drift * k.still_drift);
+            c.overdue = select(moving, moment, zero_vector<F>());
+        }
+        MovedArms<F> now = update_displacement<W, P>(c, states, t2);
+        auto far = now.turned > splat<F>(far_turn);
+        if (mask_bits(far)) renew_masses<W, P>(c, now, IA, IB, A.inverse_mass + B.inverse_mass, far);
+        sweep_normals<W, P, false>(c, A, B, t2, k, change);
+        apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);
+        Vec3T<F> slip = (now.start_slip + (B.v - A.v)) + (cross(B.w, now.rb) - cross(A.w, now.ra)), spin{};
+        if constexpr (P > 1) spin = c.turn.start_spin + (B.w - A.w);
+        solve_friction<W, P>(c, t2, slip, spin, linear, angular);
+        B.w = B.w + IB * (cross(now.rb, linear) + angular);
+        A.w = A.w - IA * (cross(now.ra, linear) + angular);
+    }
+    if constexpr (pass != Pass::solve) {
+        B.v = B.v + B.inverse_mass * linear;
+        A.v = A.v - A.inverse_mass * linear;
+    }
+    store_velocity_at<W>(states, c.b, B);
+    if (!fixed_a) store_velocity_at<W>(states, c.a, A);
+    if constexpr (pass == Pass::solve) {
+        F left = c.p[0].impulse, gone = change[0];
+        for (int j = 1; j < P; ++j) left = left + c.p[j].impulse, gone = gone + change[j];
+        auto lets_go = left + gone < splat<F>(0.0f);
+        if (mask_bits(lets_go))
+            let_go_of_friction<W, P>(c, bodies, fixed_a, select(lets_go, gone / (left - gone), splat<F>(0.0f)));
+    }
+}
+
+template <int W, int P, Pass pass>
+void run_pass(const ContactGroup& g, SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
+    auto* rows = reinterpret_cast<ContactRow<W, P>*>(g.rows);
+    const BodyArrays arrays{bodies.state.data(), bodies.inertia.data()};
+    for (int i = begin; i < end; ++i) contact_pass<W, P, pass>(rows[i], arrays, k, g.fixed_a);
+}
