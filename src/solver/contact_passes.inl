@@ -273,9 +273,7 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
     if constexpr (pass == Pass::solve) {
         F left = c.p[0].impulse, gone = change[0];
         for (int j = 1; j < P; ++j) left = left + c.p[j].impulse, gone = gone + change[j];
-        // More than half of it, and of a blow: well faster than what may be told from rest.
-        auto blow = gone * (A.inverse_mass + B.inverse_mass) < splat<F>(-3.0f * k.bounce_speed);
-        auto lets_go = select(blow, left + gone, left) < splat<F>(0.0f);
+        auto lets_go = left + gone < splat<F>(0.0f);
         if (mask_bits(lets_go))
             let_go_of_friction<W, P>(c, bodies, fixed_a, select(lets_go, gone / (left - gone), splat<F>(0.0f)));
     }
