@@ -47,6 +47,16 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
     }
 }
 
+// Arms of the centre where B has moved by so much against A: the point rides on one of the bodies, or on both.
+template <class F>
+struct Arms {
+    Vec3T<F> ra, rb;
+};
+template <int W, int P>
+LENDULET_FORCE_INLINE Arms<Wide<float, W>> arms_after(const ContactRow<W, P>& c, Vec3T<Wide<float, W>> moved) {
+    return {c.ra + c.follow * moved, c.rb - (splat<Wide<float, W>>(1.0f) - c.follow) * moved};
+}
+
 // Arms of the centre now, and the relative velocity there that was left from the start of the step.
 template <class F>
 struct MovedArms {
@@ -70,8 +80,9 @@ LENDULET_FORCE_INLINE MovedArms<Wide<float, W>> update_displacement(ContactRow<W
         c.turn.shift[0] = dot(e, c.t1);
         c.turn.shift[1] = dot(e, t2);
     }
+    const Arms<F> arms = arms_after(c, moved);
     MovedArms<F> now{
-        c.ra + c.follow * moved, c.rb - (splat<F>(1.0f) - c.follow) * moved, c.start_slip - cross(c.start_turn, moved),
+        arms.ra, arms.rb, c.start_slip - cross(c.start_turn, moved),
         maximum(dqa.x * dqa.x + dqa.y * dqa.y + dqa.z * dqa.z, dqb.x * dqb.x + dqb.y * dqb.y + dqb.z * dqb.z)};
     c.lever_a = cross(now.ra, c.n);
     c.lever_b = cross(now.rb, c.n);
@@ -196,7 +207,8 @@ template <int W, int P>
     QuatT<F> dqa, dqb;
     load_displacement_at<W>(bodies.state, c.a, dpa, dqa);
     load_displacement_at<W>(bodies.state, c.b, dpb, dqb);
-    const Vec3T<F> moved = dpb - dpa, ra = c.ra + c.follow * moved, rb = c.rb - (splat<F>(1.0f) - c.follow) * moved;
+    const Vec3T<F> moved = dpb - dpa;
+    const Arms<F> arms = arms_after(c, moved);
     // One that has gone on by more than its arm is long past what it struck: relax passes take from it as they may.
     share = select(dot(moved, moved) <= dot(c.rb, c.rb), share, splat<F>(0.0f));
     F f1 = share * c.friction.tangent[0], f2 = share * c.friction.tangent[1];
@@ -209,11 +221,11 @@ template <int W, int P>
         angular = twist * c.n;
     }
     B.v = B.v + B.inverse_mass * linear;
-    B.w = B.w + IB * (cross(rb, linear) + angular);
+    B.w = B.w + IB * (cross(arms.rb, linear) + angular);
     store_velocity_at<W>(bodies.state, c.b, B);
     if (fixed_a) return;
     A.v = A.v - A.inverse_mass * linear;
-    A.w = A.w - IA * (cross(ra, linear) + angular);
+    A.w = A.w - IA * (cross(arms.ra, linear) + angular);
     store_velocity_at<W>(bodies.state, c.a, A);
 }
 
