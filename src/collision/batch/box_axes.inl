@@ -7,6 +7,8 @@ constexpr float lowest_score = -3e38f;
 // Boxes that move fast may meet at several corners of their faces before the step ends, which only a manifold of faces
 // lists: they get one unless an edge axis separates better by this part of how far they can come.
 constexpr float fast_tolerance = 0.25f;
+// Faces that are parallel to within acos of this, 0.02 rad, meet as faces whatever axis separates best.
+constexpr float parallel_faces = 0.9998f;
 
 template <class F>
 struct WideBox {
@@ -47,12 +49,16 @@ struct BestAxis {
 
 // Separations along the 15 axes. Nearly parallel edges have none, the faces cover them.
 template <class F>
-LENDULET_FORCE_INLINE void separations(const WideBox<F>& a, const WideBox<F>& b, F* s) {
+LENDULET_FORCE_INLINE void separations(const WideBox<F>& a, const WideBox<F>& b, F* s, F* aligned) {
     Vec3T<F> d = offset_between(a, b);
     F r[3][3], ar[3][3], along_a[3];  // r[i][j] = (axis i of A) . (axis j of B)
     for (int i = 0; i < 3; ++i) {
         along_a[i] = dot(a.axis[i], d);
         for (int j = 0; j < 3; ++j) r[i][j] = dot(a.axis[i], b.axis[j]), ar[i][j] = absolute(r[i][j]);
+    }
+    for (int i = 0; i < 3; ++i) {
+        aligned[i] = maximum(maximum(ar[i][0], ar[i][1]), ar[i][2]);
+        aligned[3 + i] = maximum(maximum(ar[0][i], ar[1][i]), ar[2][i]);
     }
     for (int i = 0; i < 3; ++i) {
         F reach = a.half[i] + (b.half[0] * ar[i][0] + b.half[1] * ar[i][1] + b.half[2] * ar[i][2]);
@@ -79,14 +85,15 @@ LENDULET_FORCE_INLINE void separations(const WideBox<F>& a, const WideBox<F>& b,
 // `way`: see BoxBatch.
 template <class F>
 LENDULET_FORCE_INLINE BestAxis<F> best_axis(const WideBox<F>& a, const WideBox<F>& b, F feature, F way) {
-    F s[15];
-    separations(a, b, s);
+    F s[15], aligned[6];
+    separations(a, b, s, aligned);
     auto number = [](int k) { return splat<F>(static_cast<float>(k)); };
-    F face = number(0), face_separation = s[0], edge = number(6), edge_separation = s[6];
+    F face = number(0), face_separation = s[0], edge = number(6), edge_separation = s[6], parallel = aligned[0];
     for (int k = 1; k < 6; ++k) {
         auto better = s[k] > face_separation;
         face = select(better, number(k), face);
         face_separation = select(better, s[k], face_separation);
+        parallel = select(better, aligned[k], parallel);
     }
     for (int k = 7; k < 15; ++k) {
         auto better = s[k] > edge_separation;
@@ -95,11 +102,13 @@ LENDULET_FORCE_INLINE BestAxis<F> best_axis(const WideBox<F>& a, const WideBox<F
     }
     F tolerance = splat<F>(axis_tolerance) * minimum(minimum(minimum(a.half[0], a.half[1]), a.half[2]),
                                                      minimum(minimum(b.half[0], b.half[1]), b.half[2]));
-    auto by_edge = edge_separation > face_separation + maximum(tolerance, splat<F>(fast_tolerance) * way);
+    auto crossing = parallel < splat<F>(parallel_faces);
+    auto by_edge = crossing & (edge_separation > face_separation + maximum(tolerance, splat<F>(fast_tolerance) * way));
     F axis = select(by_edge, edge, face), separation = select(by_edge, edge_separation, face_separation);
     F remembered = splat<F>(lowest_score);
     for (int k = 0; k < 15; ++k) remembered = select(feature == number(k + 1), s[k], remembered);
-    auto given_up = (way > splat<F>(0.0f)) & (axis < splat<F>(6.0f)) & (feature > splat<F>(6.0f));  // edges for a face
+    auto given_up = ((way > splat<F>(0.0f)) | !crossing) & (axis < splat<F>(6.0f)) &
+                    (feature > splat<F>(6.0f));  // edges for a face
     remembered = select(given_up, splat<F>(lowest_score), remembered);
     axis = select(remembered > separation - tolerance, feature - number(1), axis);
     return {axis, maximum(face_separation, edge_separation)};

@@ -79,7 +79,7 @@ void face_manifolds(BoxBatch& batch, const int32_t* list, int count) {
         project_corners(f, half * minimum(slack_u, slack_v), margin, reference_names, incident_names, c);
         ChosenPoint<F> chosen[4];
         WideManifold<F> m;
-        m.count = choose_points(c, chosen);
+        m.count = choose_points(c, load_wide<F>(block.way), chosen);
         auto of_b = exchanged > half;
         m.normal = select(of_b, -f.w, f.w);
         m.follow = one - exchanged;
@@ -122,7 +122,7 @@ void edge_manifolds(BoxBatch& batch, const int32_t* list, int count) {
         F sb1 = zero - sign_of(dot(n, b1)), sb2 = zero - sign_of(dot(n, b2));
         Vec3T<F> on_a = (sa1 * ci.next(a.half)) * a1 + (sa2 * ci.last(a.half)) * a2;
         Vec3T<F> on_b = d + ((sb1 * cj.next(b.half)) * b1 + (sb2 * cj.last(b.half)) * b2);
-        Vec3T<F> gap = on_b - on_a, middle_a = on_a, middle_b = on_b;
+        Vec3T<F> gap = on_b - on_a;
         F cosine = dot(ea, eb), along_a = dot(ea, gap), along_b = dot(eb, gap);
         F inverse = one / maximum(one - cosine * cosine, splat<F>(1e-6f));
         F s = (along_a - cosine * along_b) * inverse, t = (cosine * along_a - along_b) * inverse;
@@ -146,20 +146,15 @@ void edge_manifolds(BoxBatch& batch, const int32_t* list, int count) {
             m.separation[q] = splat<F>(absent_separation);
             m.name[q] = zero;
         }
-        const F way = select(there, load_wide<F>(block.way), zero);
-        if (mask_bits(way > zero) != 0) {
-            const CrossingEdges<F> edges{n,
-                                         middle_a,
-                                         middle_b,
-                                         ea,
-                                         eb,
-                                         ci.at(a.half),
-                                         cj.at(b.half),
-                                         {sa1 * a1, sa2 * a2},
-                                         {sb1 * b1, sb2 * b2},
-                                         name_a,
-                                         name_b};
-            append_ends(ends_of(edges, select(way > zero, way, splat<F>(lowest_score))), a.arm, m);
+        if (mask_bits(m.count > zero) != 0) {
+            const F two = splat<F>(2.0f);
+            const CrossingEdge<F> edge_a{
+                on_a,  ea, s, ci.at(a.half), {sa1 * a1, sa2 * a2}, {two * ci.last(a.half), two * ci.next(a.half)},
+                name_a};
+            const CrossingEdge<F> edge_b{
+                on_b,  eb, t, cj.at(b.half), {sb1 * b1, sb2 * b2}, {two * cj.last(b.half), two * cj.next(b.half)},
+                name_b};
+            append_ends(ends_of(edge_a, edge_b, n, separation, margin), a.arm, m);
         }
         store_manifolds<W>(batch.out, block.pair, block.exchanged, m);
     }

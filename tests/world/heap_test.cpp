@@ -1,0 +1,51 @@
+// Heaps of long and thin bodies come to rest: bodies that lie on few points must not turn from one to another for ever.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "world/support.h"
+
+namespace lendulet::test {
+namespace {
+
+// `count` boxes thrown one above the other into a yard that is 2.4 times as wide as they are long; how many still move
+// after `seconds`.
+int awake_after(Vec3 half_extents, int count, int seconds) {
+    World world = WorldBuilder{}.gravity({0.0f, -10.0f, 0.0f}).friction(0.6f).build().value();
+    const float inner = 2.4f * half_extents.x, height = 0.5f * static_cast<float>(count);
+    world.add_static_body({.shape = Plane{}}).value();
+    for (float side : {-1.0f, 1.0f}) {
+        const float at = side * (inner + 1.0f);
+        world.add_static_body({.shape = Box{{1.0f, height, inner + 2.0f}}, .position = {at, 0.0f, 0.0f}}).value();
+        world.add_static_body({.shape = Box{{inner, height, 1.0f}}, .position = {0.0f, 0.0f, at}}).value();
+    }
+    std::mt19937 random(7);
+    auto unit = [&] { return static_cast<float>(random() >> 8) * (2.0f / 16777216.0f) - 1.0f; };
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < count; ++i) {
+        const Position at{half_extents.x * unit(), 1.0f + 0.4f * static_cast<float>(i), half_extents.x * unit()};
+        const Quat turn = normalize(Quat{unit(), unit(), unit(), unit() + 1.5f});
+        bodies.push_back(world
+                             .add_rigid_body({.shape = Box{half_extents},
+                                              .position = at,
+                                              .orientation = turn,
+                                              .density = 100.0f,
+                                              .friction = 0.6f})
+                             .value());
+    }
+    run(world, 60 * seconds);
+    return static_cast<int>(
+        std::count_if(bodies.begin(), bodies.end(), [&](BodyId id) { return !world.get(id).asleep(); }));
+}
+
+TEST(Heap, PlanksComeToRest) { EXPECT_EQ(awake_after({1.0f, 0.05f, 0.3f}, 60, 20), 0); }
+
+TEST(Heap, PlatesComeToRest) { EXPECT_EQ(awake_after({0.5f, 0.03f, 0.5f}, 60, 20), 0); }
+
+TEST(Heap, SticksComeToRest) { EXPECT_EQ(awake_after({1.0f, 0.06f, 0.06f}, 60, 20), 0); }
+
+TEST(Heap, SmallTilesComeToRest) { EXPECT_EQ(awake_after({0.1f, 0.01f, 0.05f}, 40, 20), 0); }
+
+}  // namespace
+}  // namespace lendulet::test
