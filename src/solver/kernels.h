@@ -34,7 +34,8 @@ struct ContactGroup {
     int colour;      // its number: groups of one number share no body
     int32_t filler;  // reserved body for the empty lanes of the last block
     int count;
-    const uint32_t* order;  // indices of the records
+    const uint32_t* order;         // indices of the records ...
+    const ContactRecord* records;  // ... in here
     std::byte* rows;
     std::byte* rolling;    // rows against rolling, or null
     ContactExtra* extras;  // by record, where `rolling` is not null

@@ -111,7 +111,7 @@ size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const 
 }
 
 void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, std::byte* rows) {
-    schedule_.place_rows(rows);
+    schedule_.place_rows(rows, records);
     for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
         kernels.prepare(g, records, bodies, begin, end);
     });
