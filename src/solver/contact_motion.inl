@@ -110,6 +110,24 @@ LENDULET_FORCE_INLINE Arms<Wide<float, W>> place_turned(ContactRow<W, P>& c, con
     return {ra, rb};
 }
 
+// 1 in the lanes that turn with their bodies: corners above a face that carry something, or will within two substeps if
+// they go on as they have so far; and those that have turned before.
+template <int W, int P>
+LENDULET_FORCE_INLINE Wide<float, W> turning_lanes(const ContactRow<W, P>& c, Wide<float, W> turned,
+                                                   const SubstepConstants& k) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f), ahead = splat<F>(1.0f + 2.0f / k.substeps_so_far);
+    F near = select(c.turn_limit < zero, one, zero);
+    for (int j = 0; j < P; ++j) {
+        F moved = c.shift;
+        if constexpr (P > 1) moved = moved + (c.p[j].u * c.turn.shift[0] + c.p[j].v * c.turn.shift[1]);
+        near = select(c.p[j].impulse > zero, one, near);
+        near = select(c.p[j].separation + ahead * moved <= zero, one, near);
+    }
+    near = select(turned > c.turn_limit, near, zero);
+    return select(c.turn_limit < splat<F>(far_turn), near, zero);
+}
+
 // Rows whose bodies have turned far since the start of the step; few ever come here, so bodies and manifolds are
 // fetched anew.
 //
@@ -121,14 +139,16 @@ LENDULET_FORCE_INLINE Arms<Wide<float, W>> place_turned(ContactRow<W, P>& c, con
 // gain energy without end.
 template <int W, int P>
 [[gnu::noinline]] MovedArms<Wide<float, W>> turn_row(ContactRow<W, P>& c, MovedArms<Wide<float, W>> now,
-                                                     const BodyArrays& bodies, const ContactGroup& g, int first) {
+                                                     const BodyArrays& bodies, const SubstepConstants& k,
+                                                     const ContactGroup& g, int first) {
     using F = Wide<float, W>;
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
+    const F turns = turning_lanes<W, P>(c, now.turned, k), renews = select(now.turned > splat<F>(far_turn), one, turns);
+    auto turned = turns > zero, far = renews > zero;
+    if (!mask_bits(far)) return now;
     RecordQuads<W> record{floats_of(g.records), {}};
     for (int l = 0; l < W; ++l)
         record.index[l] = static_cast<int32_t>(g.order[first + l < g.count ? first + l : first]);
-    const F over = select(now.turned > c.turn_limit, one, zero);
-    auto far = over > zero, turned = select(c.turn_limit < splat<F>(far_turn), over, zero) > zero;
     WideVelocity<F> A{}, B = load_velocity_at<W>(bodies.state, c.b);
     SymMat3T<F> IA{}, IB = load_inverse_inertia_at<W>(bodies.inertia, c.b);
     if (!g.fixed_a) {
@@ -176,7 +196,9 @@ template <int W, int P>
         c.lever_a = cross(now.ra, c.n);
         c.lever_b = cross(now.rb, c.n);
         c.start_approach = dot(c.n, now.start_slip);
-        renewed = c;
+        renewed.n = c.n, renewed.t1 = c.t1;
+        if constexpr (P > 1)
+            for (int j = 0; j < P; ++j) renewed.p[j].u = c.p[j].u, renewed.p[j].v = c.p[j].v;
     }
     prepare_normals<W, P>(renewed, now.ra, now.rb, IA, IB, A.inverse_mass + B.inverse_mass);
     prepare_friction<W, P>(renewed, now.ra, now.rb, IA, IB, A.inverse_mass + B.inverse_mass);
@@ -192,13 +214,13 @@ template <int W, int P>
 // Brings a row to where its bodies are, and A and B with it.
 template <int W, int P>
 LENDULET_FORCE_INLINE MovedArms<Wide<float, W>> follow_bodies(ContactRow<W, P>& c, const BodyArrays& bodies,
-                                                              const ContactGroup& g, int first,
-                                                              Vec3T<Wide<float, W>>& t2,
+                                                              const SubstepConstants& k, const ContactGroup& g,
+                                                              int first, Vec3T<Wide<float, W>>& t2,
                                                               WideVelocity<Wide<float, W>>& A,
                                                               WideVelocity<Wide<float, W>>& B) {
     MovedArms<Wide<float, W>> now = update_displacement<W, P>(c, bodies.state, t2);
     if (mask_bits(now.turned > c.turn_limit)) {
-        now = turn_row<W, P>(c, now, bodies, g, first);
+        now = turn_row<W, P>(c, now, bodies, k, g, first);
         t2 = cross(c.n, c.t1);
         B = load_velocity_at<W>(bodies.state, c.b);
         if (!g.fixed_a) A = load_velocity_at<W>(bodies.state, c.a);

@@ -184,7 +184,7 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
         B.w = B.w + IB * (cross(now.rb, linear) + angular);
         A.w = A.w - IA * (cross(now.ra, linear) + angular);
     } else if constexpr (pass == Pass::solve) {
-        if (k.moved) follow_bodies<W, P>(c, bodies, g, first, t2, A, B);
+        if (k.moved) follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
         sweep_normals<W, P, true>(c, A, B, t2, k, change);
         apply_normals<W, P, true>(c, A, B, IA, IB, t2, change);
     } else {
@@ -193,7 +193,7 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
             auto moving = dot(drift, drift) > splat<F>(k.still_drift * k.still_drift);
             c.overdue = select(moving, moment, zero_vector<F>());
         }
-        MovedArms<F> now = follow_bodies<W, P>(c, bodies, g, first, t2, A, B);
+        MovedArms<F> now = follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
         sweep_normals<W, P, false>(c, A, B, t2, k, change);
         apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);
         Vec3T<F> slip = (now.start_slip + (B.v - A.v)) + (cross(B.w, now.rb) - cross(A.w, now.ra)), spin{};

@@ -44,9 +44,9 @@ struct PatchFriction<F, 1> {
     F tangent[2];
 };
 
-// Squares of the sine of half an angle, see MovedArms::turned: from 0.03 rad on a row of corners and a face turns with
+// Squares of the sine of half an angle, see MovedArms::turned: from 0.07 rad on a row of corners and a face turns with
 // its bodies, all others get new masses from 0.2 rad on.
-inline constexpr float near_turn = 2e-4f, far_turn = 0.01f;
+inline constexpr float near_turn = 1.2e-3f, far_turn = 0.01f;
 
 template <int W, int P>
 struct alignas(64) ContactRow {

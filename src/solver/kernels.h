@@ -24,6 +24,7 @@ struct SubstepConstants {
     // Bodies whose kick is split: by what their constraints' changes in the last substep are multiplied when they are
     // repeated in this one, and when half of them is added at the end of the step.
     float repeat_scale, end_scale;
+    float substeps_so_far;  // of the step, this one included
 };
 
 // Manifolds of one colour and one size class: `count` of them, named by `order`, in rows from `rows` on.
