@@ -133,8 +133,9 @@ void ColourSchedule::measure_rows(const SolverKernels& kernels, const SolverKern
     row_bytes = (bytes + Memory::alignment - 1) / Memory::alignment * Memory::alignment;
 }
 
-void ColourSchedule::place_rows(std::byte* rows) {
+void ColourSchedule::place_rows(std::byte* rows, const ContactRecord* records) {
     for (ContactGroup& g : groups) {
+        g.records = records;
         g.rows = rows + reinterpret_cast<size_t>(g.rows);
         g.rolling = g.extras ? rows + reinterpret_cast<size_t>(g.rolling) : nullptr;
     }

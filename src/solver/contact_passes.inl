@@ -1,5 +1,4 @@
-// What passes do with contact rows: normals, friction, masses of bodies that have turned. Part of kernels.inl, after
-// contact_rows.inl.
+// What passes do with contact rows: normals and friction. Part of kernels.inl, after contact_motion.inl.
 
 enum class Pass { warm_start, solve, relax };
 
@@ -47,70 +46,6 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
     }
 }
 
-// Arms of the centre where B has moved by so much against A: the point rides on one of the bodies, or on both.
-template <class F>
-struct Arms {
-    Vec3T<F> ra, rb;
-};
-template <int W, int P>
-LENDULET_FORCE_INLINE Arms<Wide<float, W>> arms_after(const ContactRow<W, P>& c, Vec3T<Wide<float, W>> moved) {
-    return {c.ra + c.follow * moved, c.rb - (splat<Wide<float, W>>(1.0f) - c.follow) * moved};
-}
-
-// Arms of the centre now, and the relative velocity there that was left from the start of the step.
-template <class F>
-struct MovedArms {
-    Vec3T<F> ra, rb, start_slip;
-    F turned;  // square of the sine of half the angle by which one of the bodies has turned, at least
-};
-
-// Separations, levers and arms from the two bodies' displacements since the start of the step.
-template <int W, int P>
-LENDULET_FORCE_INLINE MovedArms<Wide<float, W>> update_displacement(ContactRow<W, P>& c, const BodyState* states,
-                                                                    Vec3T<Wide<float, W>> t2) {
-    using F = Wide<float, W>;
-    Vec3T<F> dpa, dpb;
-    QuatT<F> dqa, dqb;
-    load_displacement_at<W>(states, c.a, dpa, dqa);
-    load_displacement_at<W>(states, c.b, dpb, dqb);
-    Vec3T<F> moved = dpb - dpa, ea = turned_back(dqa, c.n), eb = turned_back(dqb, c.n);
-    c.shift = dot(c.n, moved) + dot(eb, c.rb + c.radius_b * c.n) - dot(ea, c.ra - c.radius_a * c.n);
-    if constexpr (P > 1) {
-        Vec3T<F> e = eb - ea;
-        c.turn.shift[0] = dot(e, c.t1);
-        c.turn.shift[1] = dot(e, t2);
-    }
-    const Arms<F> arms = arms_after(c, moved);
-    MovedArms<F> now{
-        arms.ra, arms.rb, c.start_slip - cross(c.start_turn, moved),
-        maximum(dqa.x * dqa.x + dqa.y * dqa.y + dqa.z * dqa.z, dqb.x * dqb.x + dqb.y * dqb.y + dqb.z * dqb.z)};
-    c.lever_a = cross(now.ra, c.n);
-    c.lever_b = cross(now.rb, c.n);
-    c.start_approach = dot(c.n, now.start_slip);
-    return now;
-}
-
-// From here on, see MovedArms::turned, a row gets new masses in every substep: 0.2 rad.
-inline constexpr float far_turn = 0.01f;
-
-// A slender body that has turned answers many times as much to an impulse, and rows that take it for what it was at the
-// start of the step would answer ever more to what they did themselves: from twice on they gain energy without end. In
-// the lanes that `far` holds for; few rows ever come here.
-template <int W, int P, class Mask>
-[[gnu::noinline]] void renew_masses(ContactRow<W, P>& c, const MovedArms<Wide<float, W>>& now,
-                                    const SymMat3T<Wide<float, W>>& IA, const SymMat3T<Wide<float, W>>& IB,
-                                    Wide<float, W> inverse_masses, Mask far) {
-    ContactRow<W, P> renewed = c;
-    prepare_normals<W, P>(renewed, now.ra, now.rb, IA, IB, inverse_masses);
-    prepare_friction<W, P>(renewed, now.ra, now.rb, IA, IB, inverse_masses);
-    for (int j = 0; j < P; ++j) c.p[j].mass = select(far, renewed.p[j].mass, c.p[j].mass);
-    if constexpr (P > 1)
-        for (int i = 0; i < P * (P - 1) / 2; ++i)
-            c.turn.coupling[i] = select(far, renewed.turn.coupling[i], c.turn.coupling[i]);
-    constexpr int masses = sizeof(c.friction.mass) / sizeof(c.friction.mass[0]);
-    for (int i = 0; i < masses; ++i) c.friction.mass[i] = select(far, renewed.friction.mass[i], c.friction.mass[i]);
-}
-
 // One sweep over the points; returns what it added to the impulses: `biased` with the terms that undo overlap.
 template <int W, int P, bool biased>
 LENDULET_FORCE_INLINE void sweep_normals(ContactRow<W, P>& c, const WideVelocity<Wide<float, W>>& A,
@@ -148,14 +83,6 @@ LENDULET_FORCE_INLINE void sweep_normals(ContactRow<W, P>& c, const WideVelocity
         change[j] = next - p.impulse;
         p.impulse = next;
     }
-}
-
-// All that the row holds, on B.
-template <int W, int P>
-LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> held_impulse(const ContactRow<W, P>& c, Vec3T<Wide<float, W>> t2) {
-    Wide<float, W> pressed = c.p[0].impulse;
-    for (int j = 1; j < P; ++j) pressed = pressed + c.p[j].impulse;
-    return pressed * c.n + (c.friction.tangent[0] * c.t1 + c.friction.tangent[1] * t2);
 }
 
 // Adds impulses of the points along n to the bodies, and what is overdue.
@@ -229,13 +156,14 @@ template <int W, int P>
     store_velocity_at<W>(bodies.state, c.a, A);
 }
 
-// `fixed_a` (A is not moved by constraints) and k.moved are the same for all rows of a loop: branches cost nothing
-// here, copies of the kernel would only take longer to build.
+// g.fixed_a and k.moved are the same for all rows of a loop: branches cost nothing here, copies of the kernel would
+// only take longer to build. `first`: number of the first manifold in the group.
 template <int W, int P, Pass pass>
 LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& bodies, const SubstepConstants& k,
-                                        bool fixed_a) {
+                                        const ContactGroup& g, int first) {
     using F = Wide<float, W>;
     BodyState* states = bodies.state;
+    const bool fixed_a = g.fixed_a;
     Vec3T<F> drift_a = zero_vector<F>(), drift_b;
     WideVelocity<F> A{}, B = load_velocity_at<W>(states, c.b);
     SymMat3T<F> IA{}, IB = load_inverse_inertia_at<W>(bodies.inertia, c.b, B, drift_b);
@@ -256,7 +184,7 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
         B.w = B.w + IB * (cross(now.rb, linear) + angular);
         A.w = A.w - IA * (cross(now.ra, linear) + angular);
     } else if constexpr (pass == Pass::solve) {
-        if (k.moved) update_displacement<W, P>(c, states, t2);
+        if (k.moved) follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
         sweep_normals<W, P, true>(c, A, B, t2, k, change);
         apply_normals<W, P, true>(c, A, B, IA, IB, t2, change);
     } else {
@@ -265,9 +193,7 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
             auto moving = dot(drift, drift) > splat<F>(k.still_drift * k.still_drift);
             c.overdue = select(moving, moment, zero_vector<F>());
         }
-        MovedArms<F> now = update_displacement<W, P>(c, states, t2);
-        auto far = now.turned > splat<F>(far_turn);
-        if (mask_bits(far)) renew_masses<W, P>(c, now, IA, IB, A.inverse_mass + B.inverse_mass, far);
+        MovedArms<F> now = follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
         sweep_normals<W, P, false>(c, A, B, t2, k, change);
         apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);
         Vec3T<F> slip = (now.start_slip + (B.v - A.v)) + (cross(B.w, now.rb) - cross(A.w, now.ra)), spin{};
@@ -294,6 +220,6 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
 template <int W, int P, Pass pass>
 void run_pass(const ContactGroup& g, SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
     auto* rows = reinterpret_cast<ContactRow<W, P>*>(g.rows);
-    const BodyArrays arrays{bodies.state.data(), bodies.inertia.data()};
-    for (int i = begin; i < end; ++i) contact_pass<W, P, pass>(rows[i], arrays, k, g.fixed_a);
+    const BodyArrays arrays{bodies.state.data(), bodies.inertia.data(), bodies.start.data()};
+    for (int i = begin; i < end; ++i) contact_pass<W, P, pass>(rows[i], arrays, k, g, i * W);
 }

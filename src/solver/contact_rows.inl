@@ -44,6 +44,10 @@ struct PatchFriction<F, 1> {
     F tangent[2];
 };
 
+// Squares of the sine of half an angle, see MovedArms::turned: from 0.07 rad on a row of corners and a face turns with
+// its bodies, all others get new masses from 0.2 rad on.
+inline constexpr float near_turn = 1.2e-3f, far_turn = 0.01f;
+
 template <int W, int P>
 struct alignas(64) ContactRow {
     using F = Wide<float, W>;
@@ -62,6 +66,7 @@ struct alignas(64) ContactRow {
     // Read by relax alone.
     Vec3T<F> ra, rb;  // arms of the centre at the start of the step
     F radius_a, radius_b;
+    F turn_limit;         // how far a body may turn before turn_row() is called, see MovedArms; -1 when the row turns
     Vec3T<F> start_slip;  // relative velocity of the centre at the start of the step
     Vec3T<F> start_turn;  // angular velocity then of the bodies whose arms move, weighted by how much they do
     F static_friction, dynamic_friction;
@@ -71,6 +76,7 @@ struct alignas(64) ContactRow {
 struct BodyArrays {
     BodyState* state;
     const BodyInertia* inertia;
+    const BodyStart* start;
 };
 
 // Changes of velocity since the start of the step, or the velocities then.
@@ -121,6 +127,12 @@ template <int W>
 LENDULET_FORCE_INLINE WideVelocity<Wide<float, W>> load_velocity_at(const BodyState* s, const int32_t* place) {
     Wide<float, W> p[8];
     gather8<W>(floats_of(s), place, 2, 0, p);
+    return {{p[0], p[1], p[2]}, {p[4], p[5], p[6]}, p[3], p[7]};
+}
+template <int W>
+LENDULET_FORCE_INLINE WideVelocity<Wide<float, W>> load_start_at(const BodyStart* s, const int32_t* place) {
+    Wide<float, W> p[8];
+    gather8<W>(floats_of(s), place, 1, 0, p);
     return {{p[0], p[1], p[2]}, {p[4], p[5], p[6]}, p[3], p[7]};
 }
 template <int W>
@@ -233,64 +245,93 @@ LENDULET_FORCE_INLINE void prepare_start(ContactRow<W, P>& c, const SolverBodies
     if constexpr (P > 1) c.turn.start_spin = B0.w - A0.w;
 }
 
+// Manifolds of one block of rows as quads: 0 1, 2 3, 4 .. 7, 8 9 of their records.
+template <int W, int P>
+struct ManifoldQuads {
+    Wide<float, W> head[8], friction[8], point[P > 1 ? P : 2][4], tail[8];
+    LENDULET_FORCE_INLINE explicit ManifoldQuads(const RecordQuads<W>& record) {
+        record.load8(0, head);
+        record.load8(8, friction);
+        if constexpr (P == 1) record.load4(16, point[0]);
+        else
+            for (int j = 0; j < P; j += 2) record.load8(16 + 4 * j, point[j]);
+        record.load8(32, tail);
+    }
+};
+
+// How manifolds lie at the start of the step.
+template <int W, int P>
+struct RowPlace {
+    using F = Wide<float, W>;
+    Vec3T<F> n, t1, ra, rb;
+    F u[P], v[P], separation[P], least;  // of the separations
+    LENDULET_FORCE_INLINE explicit RowPlace(const ManifoldQuads<W, P>& m) : n{m.head[0], m.head[1], m.head[2]} {
+        const F zero = splat<F>(0.0f), one = splat<F>(1.0f), half = splat<F>(0.5f), follow = m.tail[2];
+        auto steep = absolute(n.x) > half;
+        Vec3T<F> t = select(steep, Vec3T<F>{n.y, -n.x, zero}, Vec3T<F>{zero, n.z, -n.y});
+        t1 = (one / square_root(dot(t, t))) * t;
+        // The centre of the points, on the surface of the body that they ride on; but as far from the other surface as
+        // the nearest of them. There the load will be, so friction must act in that plane: where a body stands on an
+        // edge the middle of its face is well above it.
+        Vec3T<F> sum = zero_vector<F>();
+        F weight = zero, gap = zero;
+        least = splat<F>(far_separation);
+        for (int j = 0; j < P; ++j) {
+            const F s = m.point[j][3];
+            auto there = s < splat<F>(0.1f * far_separation);
+            weight = weight + select(there, one, zero);
+            gap = gap + select(there, s, zero);
+            sum = sum + select(there, Vec3T<F>{m.point[j][0], m.point[j][1], m.point[j][2]}, zero_vector<F>());
+            separation[j] = s;
+            least = minimum(least, s);
+        }
+        F mean = one / maximum(weight, one);
+        ra = mean * sum + ((follow - half) * (least + (least - mean * gap))) * n;
+        rb = ra - Vec3T<F>{m.tail[4], m.tail[5], m.tail[6]};
+        Vec3T<F> t2 = cross(n, t1);
+        for (int j = 0; j < P; ++j) {
+            Vec3T<F> d = Vec3T<F>{m.point[j][0], m.point[j][1], m.point[j][2]} - ra;
+            u[j] = dot(d, t1);
+            v[j] = dot(d, t2);
+        }
+    }
+};
+
 template <int W, int P>
 LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& group, const ContactRecord* records,
                                        const SolverBodies& bodies, int first) {
     using F = Wide<float, W>;
-    const F zero = splat<F>(0.0f), one = splat<F>(1.0f), half = splat<F>(0.5f);
+    const F zero = splat<F>(0.0f);
     int live = group.count - first < W ? group.count - first : W;
     RecordQuads<W> record{floats_of(records), {}};
+    F sharp = zero;  // 1 where corners of one body meet a face of the other
     int32_t body_a[W], body_b[W];
     for (int l = 0; l < W; ++l) {
         int32_t i = static_cast<int32_t>(group.order[first + (l < live ? l : 0)]);
         record.index[l] = i;
         body_a[l] = l < live ? records[i].body_a : group.filler;
         body_b[l] = l < live ? records[i].body_b : group.filler;
+        if (!group.rolling && (records[i].flags & contact_sharp)) set_lane(sharp, l, 1.0f);
         c.a[l] = 8 * body_a[l];
         c.b[l] = 8 * body_b[l];
     }
-    F head[8], friction[8], point[P > 1 ? P : 2][4], tail[8];  // quads 0 1, 2 3, 4 .. 7, 8 9
-    record.load8(0, head);
-    record.load8(8, friction);
-    if constexpr (P == 1) record.load4(16, point[0]);
-    else
-        for (int j = 0; j < P; j += 2) record.load8(16 + 4 * j, point[j]);
-    record.load8(32, tail);
-
-    c.n = {head[0], head[1], head[2]};
-    auto steep = absolute(c.n.x) > half;
-    Vec3T<F> t = select(steep, Vec3T<F>{c.n.y, -c.n.x, zero}, Vec3T<F>{zero, c.n.z, -c.n.y});
-    c.t1 = (one / square_root(dot(t, t))) * t;
-    c.static_friction = head[3];
-    c.dynamic_friction = friction[7];
-    c.radius_a = tail[0], c.radius_b = tail[1], c.follow = tail[2];
-    c.bounce_speed = select(tail[3] > zero, splat<F>(-1.0f), splat<F>(-1e30f));
-    c.push_speed = tail[7];
-
-    // The centre of the points, on the surface of the body that they ride on.
-    Vec3T<F> sum = zero_vector<F>();
-    F weight = zero, gap = zero;
-    for (int j = 0; j < P; ++j) {
-        auto there = point[j][3] < splat<F>(0.1f * far_separation);
-        weight = weight + select(there, one, zero);
-        gap = gap + select(there, point[j][3], zero);
-        sum = sum + select(there, Vec3T<F>{point[j][0], point[j][1], point[j][2]}, zero_vector<F>());
-    }
-    F mean = one / maximum(weight, one);
-    c.ra = mean * sum + ((c.follow - half) * (mean * gap)) * c.n;
-    c.rb = c.ra - Vec3T<F>{tail[4], tail[5], tail[6]};
+    const ManifoldQuads<W, P> m(record);
+    const RowPlace<W, P> place(m);
+    c.n = place.n, c.t1 = place.t1, c.ra = place.ra, c.rb = place.rb;
+    c.static_friction = m.head[3];
+    c.dynamic_friction = m.friction[7];
+    c.radius_a = m.tail[0], c.radius_b = m.tail[1], c.follow = m.tail[2];
+    c.bounce_speed = select(m.tail[3] > zero, splat<F>(-1.0f), splat<F>(-1e30f));
+    c.push_speed = m.tail[7];
+    sharp = select(absolute(c.follow - splat<F>(0.5f)) > splat<F>(0.25f), sharp, zero);
+    sharp = select(maximum(c.radius_a, c.radius_b) > zero, zero, sharp);
+    c.turn_limit = select(sharp > zero, splat<F>(near_turn), splat<F>(far_turn));
     c.lever_a = cross(c.ra, c.n);
     c.lever_b = cross(c.rb, c.n);
-
-    Vec3T<F> t2 = cross(c.n, c.t1);
     for (int j = 0; j < P; ++j) {
-        if constexpr (P > 1) {
-            Vec3T<F> d = Vec3T<F>{point[j][0], point[j][1], point[j][2]} - c.ra;
-            c.p[j].u = dot(d, c.t1);
-            c.p[j].v = dot(d, t2);
-        }
-        c.p[j].separation = point[j][3];
-        c.p[j].impulse = head[4 + j];
+        if constexpr (P > 1) c.p[j].u = place.u[j], c.p[j].v = place.v[j];
+        c.p[j].separation = place.separation[j];
+        c.p[j].impulse = m.head[4 + j];
     }
     c.shift = zero;
     c.overdue = zero_vector<F>();
@@ -303,10 +344,10 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     F inverse_masses = A.inverse_mass + B.inverse_mass;
     prepare_normals<W, P>(c, c.ra, c.rb, IA, IB, inverse_masses);
     prepare_friction<W, P>(c, c.ra, c.rb, IA, IB, inverse_masses);
-    Vec3T<F> f{friction[0], friction[1], friction[2]};
+    Vec3T<F> f{m.friction[0], m.friction[1], m.friction[2]};
     c.friction.tangent[0] = dot(f, c.t1);
-    c.friction.tangent[1] = dot(f, t2);
-    if constexpr (P > 1) c.friction.twist = friction[3];
+    c.friction.tangent[1] = dot(f, cross(c.n, c.t1));
+    if constexpr (P > 1) c.friction.twist = m.friction[3];
     for (int l = live; l < W; ++l) {  // empty lanes never push
         for (int j = 0; j < P; ++j) set_lane(c.p[j].impulse, l, 0.0f), set_lane(c.p[j].mass, l, 0.0f);
         set_lane(c.friction.tangent[0], l, 0.0f), set_lane(c.friction.tangent[1], l, 0.0f);

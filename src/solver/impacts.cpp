@@ -198,14 +198,17 @@ Impact impact_of(float gap, float approach, float acceleration) {
 // One point of a manifold; true where it bounced.
 bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPointRecord& point,
                   float tangential_restitution, const SubstepConstants& k, int sweep) {
-    const Vec3 n = load(r.normal), ra0 = load(point.position), offset = load(r.arm_offset);
+    const Vec3 n0 = load(r.normal), ra0 = load(point.position), offset = load(r.arm_offset);
     const float half_gap = 0.5f * point.separation;
     // Core points turn with their bodies, swept surfaces do not.
-    Side a(bodies, r.body_a, ra0 - (half_gap + r.radius_a) * n);
-    Side b(bodies, r.body_b, ra0 - offset + (half_gap + r.radius_b) * n);
+    Side a(bodies, r.body_a, ra0 - (half_gap + r.radius_a) * n0);
+    Side b(bodies, r.body_b, ra0 - offset + (half_gap + r.radius_b) * n0);
+    // The normal of a face that a corner meets turns with its body, see turn_row().
+    const bool on_face = (r.flags & contact_sharp) != 0 && r.follow != 0.5f;
+    const Vec3 n = on_face ? rotate((r.follow > 0.5f ? a : b).now.dq, n0) : n0;
     const Vec3 apart = offset + (load(b.state->dp) - load(a.state->dp));
     const Vec3 turned = (b.now.core - b.core0) - (a.now.core - a.core0);
-    const float gap = maximum(point.separation + dot(n, (apart - offset) + turned), 0.0f);
+    const float gap = maximum(dot(n, n0) * point.separation + dot(n, (apart - offset) + turned), 0.0f);
     const Vec3 v = (b.now.v + cross(b.now.w, b.now.core)) - (a.now.v + cross(a.now.w, a.now.core));
     const Impact first = impact_of(gap, dot(v, n), dot(b.core_acceleration() - a.core_acceleration(), n));
     if (first.time > k.h || !(first.speed >= k.bounce_speed)) return false;

@@ -24,6 +24,7 @@ struct SubstepConstants {
     // Bodies whose kick is split: by what their constraints' changes in the last substep are multiplied when they are
     // repeated in this one, and when half of them is added at the end of the step.
     float repeat_scale, end_scale;
+    float substeps_so_far;  // of the step, this one included
 };
 
 // Manifolds of one colour and one size class: `count` of them, named by `order`, in rows from `rows` on.
@@ -34,7 +35,8 @@ struct ContactGroup {
     int colour;      // its number: groups of one number share no body
     int32_t filler;  // reserved body for the empty lanes of the last block
     int count;
-    const uint32_t* order;  // indices of the records
+    const uint32_t* order;         // indices of the records ...
+    const ContactRecord* records;  // ... in here
     std::byte* rows;
     std::byte* rolling;    // rows against rolling, or null
     ContactExtra* extras;  // by record, where `rolling` is not null

@@ -12,6 +12,8 @@ namespace {
 
 #include "solver/contact_rows.inl"
 
+#include "solver/contact_motion.inl"
+
 #include "solver/contact_passes.inl"
 
 #include "solver/rolling.inl"

@@ -27,7 +27,7 @@ SubstepConstants substep_constants(const SolverSettings& settings) {
     k.bounce_speed = bounce_threshold_substeps * settings.gravity * k.h + 1e-3f;
     k.still_drift = settings.gravity * k.h * k.h;
     k.joints = k.moved = k.first = k.last = false;
-    k.repeat_scale = k.end_scale = 1.0f;
+    k.substeps_so_far = k.repeat_scale = k.end_scale = 1.0f;
     return k;
 }
 
@@ -111,7 +111,7 @@ size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const 
 }
 
 void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, std::byte* rows) {
-    schedule_.place_rows(rows);
+    schedule_.place_rows(rows, records);
     for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
         kernels.prepare(g, records, bodies, begin, end);
     });
@@ -135,6 +135,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const SubstepConstants before = k;
         k.first = substep == 0;
+        k.substeps_so_far = static_cast<float>(substep + 1);
         k.last = substep == settings.substeps - 1;
         k.repeat_scale = substep == 1 ? 2.0f : 1.0f;  // the first substep began with half a kick
         k.end_scale = settings.substeps > 1 ? 0.5f : 1.0f;

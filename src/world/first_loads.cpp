@@ -3,8 +3,11 @@
 //
 // From the top down, every body hands its weight and what it carries to the contacts beneath it, in equal parts. That
 // is exact for columns and walls, and elsewhere a first guess like any other: the solver's rows go on from there.
+#include "world/first_loads.h"
+
 #include <algorithm>
 
+#include "solver/solver.h"
 #include "world/world_data.h"
 
 namespace lendulet {
@@ -57,6 +60,69 @@ void guess_first_loads(WorldData& world, float weight) {
         }
         i = end;
     }
+}
+
+namespace {
+
+// How far the upper body of the contacts list[first .. end) is put down, by the mean of what each of them asks for.
+float settled_by(const WorldData& world, size_t first, size_t end, float sinking) {
+    float sum = 0.0f;
+    for (size_t k = first; k < end; ++k) {
+        const FirstLoad& f = world.first_loads[k];
+        const ContactRecord& r = world.records[f.record];
+        float impulse = 0.0f, gap = 0.0f, inverse_masses = world.bodies.mass[f.upper].inverse_mass, below = 0.0f;
+        for (int j = 0; j < r.point_count; ++j) {
+            impulse += r.normal_impulse[j];
+            gap = minimum(gap, r.points[j].separation);
+        }
+        if (f.lower != no_slot) {
+            inverse_masses += world.bodies.mass[f.lower].inverse_mass;
+            below = world.island_loads[f.lower].carried;
+        }
+        const float overlap = minimum(sinking * impulse * inverse_masses, gap_limit(world, f.upper));
+        sum += below + maximum(overlap + gap, 0.0f);
+    }
+    return sum / static_cast<float>(end - first);
+}
+
+// The contact's bodies have gone down by so much.
+void follow_settling(ContactRecord& r, Vec3 down, float upper, float lower) {
+    for (int j = 0; j < r.point_count; ++j) r.points[j].separation -= upper - lower;
+    const bool a_above = dot(Vec3{r.normal[0], r.normal[1], r.normal[2]}, down) > 0.0f;
+    const Vec3 between = (a_above ? lower - upper : upper - lower) * down;
+    for (int k = 0; k < 3; ++k) r.arm_offset[k] += component(between, k);
+}
+
+}  // namespace
+
+void settle_first_loads(WorldData& world, float dt) {
+    const Array<FirstLoad>& list = world.first_loads;
+    const float h = dt / static_cast<float>(world.config.solver_steps);
+    const Vec3 down = normalize(world.config.gravity);
+    // What a body carries has been handed on: from here on `carried` is how far it is put down, m.
+    for (const FirstLoad& f : list) {
+        world.island_loads[f.upper].carried = 0.0f;
+        if (f.lower != no_slot) world.island_loads[f.lower].carried = 0.0f;
+    }
+    for (size_t end = list.size(); end > 0;) {
+        const uint32_t upper = list[end - 1].upper;
+        size_t first = end;
+        while (first > 0 && list[first - 1].upper == upper) --first;
+        // Impulses are those of the setting's substep, and gaps go with the square of the island's.
+        const auto shorter = static_cast<float>(1 << 2 * substep_class(world, upper));
+        const float settled = settled_by(world, first, end, contact_leak / contact_bias * h / shorter);
+        world.island_loads[upper].carried = settled;
+        Position& x = world.bodies.pose[upper].position;
+        Vec3& low = world.bodies.momenta[upper].x_low;
+        const Vec3 way = settled * down - low;
+        const Position there = x + way;
+        low = (there - x) - way;
+        x = there;
+        end = first;
+    }
+    for (const FirstLoad& f : list)
+        follow_settling(world.records[f.record], down, world.island_loads[f.upper].carried,
+                        f.lower == no_slot ? 0.0f : world.island_loads[f.lower].carried);
 }
 
 }  // namespace lendulet

@@ -245,8 +245,37 @@ void unpack_contacts(WorldData& world) { scale_impulses(world, 1); }
 
 namespace {
 
+bool all_finite(const float* x, int count) {
+    float sum = 0.0f;
+    for (int i = 0; i < count; ++i) sum += x[i];
+    return is_finite(sum);
+}
+
+// Where one impulse of a joint is no number none of its others is to be trusted.
+void forget_joint_impulses(WorldData& world) {
+    for (JointRecord& r : world.joint_records) {
+        const float held[] = {r.limit_0, r.limit_1, r.motor, r.spring};
+        bool finite = all_finite(r.linear, 3) && all_finite(r.angular, 3) && all_finite(held, 4) &&
+                      all_finite(r.impulse, 3) && all_finite(r.angular_impulse, 3);
+        JointAxesRecord* axes =
+            r.type == JointClass::six_degrees ? &world.joint_axes[static_cast<size_t>(r.axes)] : nullptr;
+        for (int k = 0; axes && k < joint_axes; ++k) {
+            const JointAxisRecord& x = axes->axis[k];
+            finite = finite && is_finite(x.limit + x.motor + x.spring);
+        }
+        if (finite) continue;
+        for (float* x : {r.linear, r.angular, r.impulse, r.angular_impulse}) x[0] = x[1] = x[2] = 0.0f;
+        r.limit_0 = r.limit_1 = r.motor = r.spring = 0.0f;
+        for (int k = 0; axes && k < joint_axes; ++k) {
+            JointAxisRecord& x = axes->axis[k];
+            x.limit = x.motor = x.spring = 0.0f;
+        }
+    }
+}
+
 // What held a body whose state had to be put back is no number to begin the next step with.
 void forget_impulses(WorldData& world) {
+    forget_joint_impulses(world);
     for (uint32_t i : world.active) {
         ContactRecord& r = world.records[i];
         float sum = r.twist_impulse;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/prefetch.h"
+#include "world/first_loads.h"
 #include "world/world_data.h"
 
 namespace lendulet {
@@ -266,6 +267,7 @@ void choose_substeps(WorldData& world, float dt) {
         IslandLoad& l = loads[root(world.load_parent, slot)];
         if (!l.decided) decide(l, gravity, dt, world.config.solver_steps);
     }
+    if (!world.first_loads.empty()) settle_first_loads(world, dt);
 }
 
 int substep_class(WorldData& world, uint32_t slot) {

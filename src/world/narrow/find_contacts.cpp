@@ -295,7 +295,7 @@ private:
         float near = minimum(fa.near, fb.near);
         for (int k = 0; k < 4; ++k) pose.rotation_a[k] = fa.rotation[k], pose.rotation_b[k] = fb.rotation[k];
         for (int k = 0; k < 3; ++k) pose.offset[k] = between_centres(fa.centre[k], fa.low[k], fb.centre[k], fb.low[k]);
-        pose.tolerance = count > 0 ? kept_share * near : 1e30f;
+        pose.tolerance = count > 0 ? kept_share * near : any_motion;
         pose.clearance = count > 0 ? margin + near : clearance;
     }
 

@@ -25,6 +25,7 @@ struct alignas(64) KeptPose {
 };
 static_assert(sizeof(KeptPose) == 64);
 inline constexpr float unkept = -1e30f;
+inline constexpr float any_motion = 1e30f;  // tolerance of a pair without points: its clearance alone counts
 
 // Separations of a record's points when they were found.
 struct alignas(16) FoundSeparations {

@@ -18,6 +18,12 @@ void write_surface(const ContactSurface& surface, ContactRecord& r) {
     r.restitution = surface.restitution;
 }
 
+// Whether all of a surface is flat faces, with edges and corners between them.
+bool is_sharp(const Geometry& g) {
+    return g.rounding == 0.0f && (g.kind == GeometryKind::box || g.kind == GeometryKind::hull ||
+                                  g.kind == GeometryKind::plane || has_triangles(g));
+}
+
 // Points that no name tells.
 void take_nearest(ContactRecord& r, const OldContact& old, bool* found, bool* used, float tolerance, float scale) {
     for (int j = 0; j < r.point_count; ++j) {
@@ -40,7 +46,8 @@ void take_nearest(ContactRecord& r, const OldContact& old, bool* found, bool* us
 void prepare_record(const WorldData& world, const ColliderPair& p, ContactRecord& r) {
     write_surface(combine(world.colliders.surface[p.a], world.colliders.surface[p.b]), r);
     r.separation_speed = p.fixed_a ? world.config.static_separation_speed : world.config.rigid_separation_speed;
-    r.flags = p.flipped ? contact_flipped : 0u;
+    const bool sharp = is_sharp(world.colliders.geometry[p.a]) && is_sharp(world.colliders.geometry[p.b]);
+    r.flags = (p.flipped ? contact_flipped : 0u) | (sharp ? contact_sharp : 0u);
 }
 
 void set_surface(const WorldData& world, const ColliderPair& p, ContactRecord& r) {

@@ -43,12 +43,16 @@ LENDULET_FORCE_INLINE F vector_length(QuatT<F> q) {
     return square_root(q.x * q.x + q.y * q.y + q.z * q.z);
 }
 
+// Pairs that touch and come nearer or slide faster than this, in parts of the distance at which points are listed, are
+// found anew in every step: a manifold that is kept lies as it lay, which would slow small dominoes by 2 %.
+constexpr float kept_speed = 10.0f;  // 1/s
+
 // A point at r from the centre of mass moves by at most 2 |vec dq| |r| relative to that: no point of the surfaces has
 // moved relative to the other body by more than `moved`.
 template <int W>
 void test_motion(MotionBatch& batch) {
     using F = Wide<float, W>;
-    const F two = splat<F>(2.0f);
+    const F zero = splat<F>(0.0f), two = splat<F>(2.0f);
     for (int k = 0; k < batch.count; k += W) {
         for (int l = batch.count - k; l < W; ++l) {
             batch.a[k + l] = batch.a[k], batch.b[k + l] = batch.b[k], batch.pose[k + l] = batch.pose[k];
@@ -64,6 +68,9 @@ void test_motion(MotionBatch& batch) {
         F margin = step_margin(near, va, vb, batch.dt, batch.fall);
         F moved = square_root(dot(m.shift, m.shift)) +
                   two * (vector_length(m.turn_a) * arm_a[3] + vector_length(m.turn_b) * arm_b[3]);
+        const F way = margin - near - splat<F>(batch.fall), most = splat<F>(kept_speed * batch.dt) * near;
+        const F touching = select(tolerance < splat<F>(any_motion), zero, tolerance);
+        tolerance = select(way > most, touching, tolerance);
         F room = minimum(tolerance, state[0] - margin);
         store_wide(batch.margin + k, margin);
         store_wide(batch.kept + k, select(moved <= room, splat<F>(1.0f), splat<F>(0.0f)));
