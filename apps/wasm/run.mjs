@@ -23,7 +23,12 @@ async function lend({ module, memory, number, stack, own }) {
     engine.__stack_pointer.value = stack;
     engine.__wasm_init_tls(own);
     parentPort.postMessage("ready");
-    engine.lendulet_lend_thread(number);
+    try {
+        engine.lendulet_lend_thread(number);
+    } catch (error) {
+        engine.lendulet_thread_stopped();
+        throw error;
+    }
 }
 
 async function start(module, threads) {

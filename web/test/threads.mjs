@@ -101,6 +101,7 @@ export const threadChecks = {
             assert.ok(await page.isDisabled("#set-threads"));
             await openScene(page, scene);
             assert.equal(await steps(page, native.steps), native.hashes[scene]);
+            await page.context().close(); // before its server
         } finally {
             server.close();
         }
