@@ -6,10 +6,9 @@
 
 #include "base/crew.h"
 
-// The C library was compiled for one thread. Of what it keeps between calls the engine's loops touch the heap alone
-// (room that each worker needs for itself), so the heap gets a lock; who waits for it spins, since the page's own
-// thread must not sleep. Stages of a step that have been warmed up take no memory. Beside it there is `errno`, which
-// nobody reads here, and static data of functions that only the thread that calls the engine enters.
+// The C library was compiled for one thread. The engine's loops ask it for nothing that it keeps: they take no memory
+// (docs/threads.md), and what else has static data is called by the thread that steps. All the same the heap has a
+// lock, for what a host may do beside a step; who waits for it spins, since a page's own thread must not sleep.
 namespace {
 
 std::atomic<bool> heap_taken{false};

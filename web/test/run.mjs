@@ -64,7 +64,7 @@ const tools = {
 };
 let failed = 0;
 const isChosen = (name) => (quick ? inQuick.some((start) => name.startsWith(start)) : name.includes(words));
-const all = Object.entries({ ...checks, ...explainChecks, ...fileChecks, ...toolChecks, ...threadChecks, ...nativeChecks });
+const all = [checks, explainChecks, fileChecks, toolChecks, threadChecks, nativeChecks].flatMap(Object.entries);
 const chosen = all.filter(([name]) => isChosen(name));
 for (const [name, check] of chosen) {
     const start = Date.now();

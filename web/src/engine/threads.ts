@@ -17,14 +17,14 @@ const pageBytes = 65536, firstPages = 256; // at least, as the module is linked
 const mostMegabytes = [2048, 512];         // at most, and where a machine has no room for that
 const stackBytes = 1 << 20;                // as the module's own
 
-// How many threads worlds get, `asked` being what the address says: with no more than half of what the machine runs at
-// once the drawing and the browser itself have room, and threads of a core do not wait for each other.
+// How many threads worlds get, `asked` being what the address says: with half of what the machine runs at once the
+// drawing, the browser itself and others have room. The page's thread cannot give up its core where it waits for
+// another one that has none, so with all of them a step takes longer than alone as soon as anybody else does anything.
 export function usualThreads(asked: string | null): number {
     if (!globalThis.crossOriginIsolated || typeof SharedArrayBuffer === "undefined") return 1;
     const wanted = Number(asked);
     if (asked !== null && wanted >= 1) return Math.min(Math.floor(wanted), mostThreads);
-    const processors = navigator.hardwareConcurrency || 1;
-    return processors < 2 ? 1 : Math.min(Math.max(processors >> 1, 2), 8);
+    return Math.min(Math.max(navigator.hardwareConcurrency >> 1, 1), 8);
 }
 
 export function sharedMemory(): WebAssembly.Memory {
@@ -45,7 +45,9 @@ export class Threads {
     private asked = 1;
     private readonly listeners: ((sentence: string) => void)[] = [];
 
-    constructor(private readonly engine: Started, private readonly memory: WebAssembly.Memory, readonly usual: number) {}
+    constructor(
+        private readonly engine: Started, private readonly memory: WebAssembly.Memory, readonly usual: number,
+    ) {}
 
     // From now on there may be so many, as soon as they have come. They stay: where fewer are wanted the others sleep.
     want(count: number): void {

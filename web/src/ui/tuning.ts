@@ -66,6 +66,7 @@ export class Tuning {
     offerThreads(there: boolean): void {
         const field = element<HTMLInputElement>("set-threads");
         field.disabled = !there;
-        field.title = there ? "" : "The engine in this page has one thread; ./dev view has many.";
+        const more = globalThis.crossOriginIsolated ? "?threads=2 in the address asks for two" : "./dev view has many";
+        field.title = there ? "" : `The engine in this page has one thread; ${more}.`;
     }
 }
