@@ -38,6 +38,9 @@ export const threadChecks = {
             assert.equal(await steps(page, native.steps), native.hashes[scene], `${count} threads`);
         }
         await there(page, 4); // those who are not wanted sleep
+        await page.fill("#set-threads", "65"); // refused, in words that are the page's thread's own
+        await page.press("#set-threads", "Enter");
+        await until(page, () => document.getElementById("message").textContent.includes("1 to 64"));
         // Rewinding, with another number of threads in the past, and a fork beside the world.
         await openScene(page, scene);
         assert.equal(await page.evaluate(() => window.lendulet.player.world.settings().workers), 2);
