@@ -5,9 +5,21 @@
 namespace lendulet {
 namespace {
 
-// A look whether there is a loop takes about a nanosecond: longer than nearly all that a step does
-// between two loops, and little beside what sleeping and waking take.
-constexpr int patient_looks = 200000;
+// Some 0.2 ms: longer than nearly all that a step does between two loops, and about what sleeping and waking take.
+constexpr int patient_looks = 6000;
+
+// Between two looks. WebAssembly has no instruction for it: divisions that wait for each other take about as long as
+// one does elsewhere, and leave nearly all of a core to its other thread, which most likely has the work.
+class Pause {
+public:
+    void operator()() {
+        for (int i = 0; i < 8; ++i) value_ = 3.0 / value_;
+        if (value_ == 0.0) std::abort();  // never, which the compiler does not know
+    }
+
+private:
+    double value_ = 1.7;
+};
 
 #ifdef __wasm__
 inline void wait(std::atomic<uint32_t>& place, uint32_t value) {
@@ -49,9 +61,12 @@ void Crew::wake(int number) {
 void Crew::lend(int number) {
     if (number < 1 || number >= most) return;
     uint32_t seen = 0;
+    Pause pause;
     for (;;) {
-        for (int looks = 0; calls_.load(std::memory_order_acquire) == seen; ++looks)
+        for (int looks = 0; calls_.load(std::memory_order_acquire) == seen; ++looks) {
             if (looks >= patient_looks && !sleep(number, seen)) return;
+            pause();
+        }
         seen = calls_.load(std::memory_order_acquire);
         loop_.work(number);
     }
@@ -71,8 +86,11 @@ void Crew::run(int workers, int count, int grain, SharedLoop::Run run, void* con
     calls_.fetch_add(1);
     for (int w = 1; w < workers && w < most; ++w) wake(w);
     loop_.work(0);
-    while (!loop_.ended())
+    Pause pause;
+    while (!loop_.ended()) {
         if (stopped_.load(std::memory_order_relaxed)) std::abort();
+        pause();
+    }
     busy_.store(false);
 }
 
