@@ -30,6 +30,9 @@ endif()
 if(LENDULET_SINGLE_THREADED)
     target_compile_definitions(lendulet_flags INTERFACE LENDULET_SINGLE_THREADED)
 endif()
+if(LENDULET_LENT_THREADS)
+    target_compile_definitions(lendulet_flags INTERFACE LENDULET_LENT_THREADS)
+endif()
 # The core has no run-time type information, which checks of vptr need. What sanitizers insert makes GCC 12 take the
 # alternatives of a variant that it does not hold for values in use.
 if(LENDULET_SANITIZE)

@@ -1,8 +1,8 @@
-// Builds the static page: node build.mjs MODULES FOLDER
-// MODULES: the folder of lendulet_wasm.wasm and lendulet_explain.wasm.
+// Builds the static page: node build.mjs MODULES[,MODULES] FOLDER
+// MODULES: folders of lendulet_wasm.wasm, lendulet_explain.wasm and lendulet_threads.wasm.
 // MODULES "-": without an engine of its own, for a native one behind the server.
 import { build } from "esbuild";
-import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -15,7 +15,7 @@ const here = fileURLToPath(new URL(".", import.meta.url));
 mkdirSync(folder, { recursive: true });
 for (const name of readdirSync(folder)) if (name.startsWith("part-")) rmSync(join(folder, name)); // of other builds
 await build({
-    entryPoints: { viewer: join(here, "src/main.ts") },
+    entryPoints: { viewer: join(here, "src/main.ts"), worker: join(here, "src/worker.ts") },
     outdir: folder,
     bundle: true,
     splitting: true, // what only WebGPU needs is loaded where there is WebGPU
@@ -28,10 +28,15 @@ await build({
 });
 for (const file of ["index.html", "style.css", "explain.css", "icon.svg"])
     copyFileSync(join(here, file), join(folder, file));
-const made = { "lendulet.wasm": "lendulet_wasm.wasm", "lendulet_explain.wasm": "lendulet_explain.wasm" };
+const made = {
+    "lendulet.wasm": "lendulet_wasm.wasm", "lendulet_explain.wasm": "lendulet_explain.wasm",
+    "lendulet_threads.wasm": "lendulet_threads.wasm",
+};
 if (modules !== "-") {
-    if (resolve(modules) !== resolve(folder))
-        for (const [file, from] of Object.entries(made)) copyFileSync(join(modules, from), join(folder, file));
+    const folders = modules.split(",");
+    if (folders.some((from) => resolve(from) !== resolve(folder)))
+        for (const [file, from] of Object.entries(made))
+            copyFileSync(folders.map((name) => join(name, from)).find(existsSync) ?? from, join(folder, file));
 } else {
     const page = readFileSync(join(here, "index.html"), "utf8");
     const without = '<head>\n<meta name="lendulet-wasm" content="no">';

@@ -75,9 +75,8 @@ private:
     void begin_session();
     void end_session();
     void thread_main(int worker);
-    void work(int worker);
 
-    struct Threads;  // std::thread and its friends, absent in single-threaded builds
+    struct Threads;  // std::thread and its friends; absent where there are none, or where they are lent (crew.h)
     int workers_ = 1;
     Hook hook_;
     std::unique_ptr<Threads> threads_;

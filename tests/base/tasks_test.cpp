@@ -2,10 +2,13 @@
 #include "base/tasks.h"
 
 #include <atomic>
+#include <chrono>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "base/crew.h"
 
 namespace lendulet {
 namespace {
@@ -74,6 +77,98 @@ TEST(TaskPool, WorkersHaveNumbersOfTheirOwn) {
             inside[worker].fetch_sub(1);
         });
     EXPECT_FALSE(shared.load());
+}
+
+// Threads that lend themselves to a crew until it is dismissed.
+class Lent {
+public:
+    explicit Lent(Crew& crew) : crew_(crew) {}
+    ~Lent() {
+        crew_.dismiss();
+        for (std::thread& t : threads_) t.join();
+    }
+    void add(int number) {
+        threads_.emplace_back([this, number] { crew_.lend(number); });
+    }
+
+private:
+    Crew& crew_;
+    std::vector<std::thread> threads_;
+};
+
+template <class Body>
+void run(Crew& crew, int workers, int count, int grain, Body body) {
+    crew.run(
+        workers, count, grain, [](void* c, int b, int e, int w) { (*static_cast<Body*>(c))(b, e, w); }, &body);
+}
+
+TEST(Crew, SeveralThreadsVisitEveryIndexOnceHoweverManyCome) {
+    Crew crew;
+    Lent lent(crew);
+    for (int threads = 1; threads <= 4; ++threads) {
+        for (int workers : {1, 2, 3, 8})
+            for (int count : {1, 7, 64, 1000})
+                for (int grain : {1, 3, 64, 5000}) {
+                    const std::vector<int> once(static_cast<size_t>(count), 1);
+                    EXPECT_EQ(visits(count, [&](auto body) { run(crew, workers, count, grain, body); }), once)
+                        << threads << ' ' << workers << ' ' << count << ' ' << grain;
+                }
+        lent.add(threads);
+    }
+}
+
+// Worlds of different numbers of workers take turns, as forks do: a worker beyond those of a loop must take nothing.
+TEST(Crew, SeveralThreadsLateToALoopOfFewerWorkersTakeNothing) {
+    Crew crew;
+    Lent lent(crew);
+    for (int number = 1; number < 4; ++number) lent.add(number);
+    std::atomic<bool> strangers{false};
+    std::vector<int> values(97);
+    int64_t expected = 0, sum = 0;
+    for (int loop = 0; loop < 20000; ++loop) {
+        const int count = 1 + loop * 31 % 97, workers = 1 + loop % 4;
+        run(crew, workers, count, 1 + loop % 3, [&](int begin, int end, int worker) {
+            if (worker < 0 || worker >= workers) strangers = true;
+            for (int i = begin; i < end; ++i) ++values[static_cast<size_t>(i)];
+        });
+        expected += count;
+    }
+    for (int v : values) sum += v;
+    EXPECT_EQ(sum, expected);
+    EXPECT_FALSE(strangers.load());
+}
+
+TEST(Crew, ThreadsThatSleepAreWoken) {
+    Crew crew;
+    Lent lent(crew);
+    lent.add(1);
+    for (int loop = 0; loop < 10; ++loop) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        // Ends only where both are there at the same time.
+        std::atomic<int> there{0};
+        run(crew, 2, 2, 1, [&](int, int, int) {
+            ++there;
+            while (there < 2) std::this_thread::yield();
+        });
+        EXPECT_EQ(there, 2);
+    }
+}
+
+TEST(Crew, LoopsWithinLoopsAndOfOtherThreadsAreDoneAlone) {
+    Crew crew;
+    Lent lent(crew);
+    lent.add(1);
+    std::atomic<int> visited{0};
+    auto loops = [&] {
+        for (int loop = 0; loop < 200; ++loop)
+            run(crew, 2, 10, 1, [&](int begin, int end, int) {
+                for (int i = begin; i < end; ++i) run(crew, 2, 3, 1, [&](int b, int e, int) { visited += e - b; });
+            });
+    };
+    std::thread other(loops);
+    loops();
+    other.join();
+    EXPECT_EQ(visited, 2 * 200 * 10 * 3);
 }
 
 }  // namespace

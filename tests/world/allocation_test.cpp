@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <new>
+#include <thread>
 
 #include "world/support.h"
 
@@ -33,12 +34,15 @@ namespace {
 
 struct Counter {
     std::atomic<long> allocations{0}, frees{0}, live_bytes{0}, misaligned{0}, largest{0};  // `largest`: at once
+    std::atomic<long> strange{0};                                                          // by other threads
+    std::thread::id stepping = std::this_thread::get_id();
 
     AllocatorHook hook() {
         return {this,
                 [](void* user, size_t bytes, size_t alignment) {
                     Counter& c = *static_cast<Counter*>(user);
                     c.allocations.fetch_add(1);
+                    if (std::this_thread::get_id() != c.stepping) c.strange.fetch_add(1);
                     c.live_bytes.fetch_add(static_cast<long>(bytes));
                     c.largest = std::max(c.largest.load(), static_cast<long>(bytes));
                     size_t rounded = (bytes + alignment - 1) / alignment * alignment;
@@ -202,6 +206,22 @@ TEST(Reserve, TakesACountOfContactsAtItsWord) {
     run(exact, 120);
     EXPECT_GT(told.largest.load(), 64 * 1024);
     EXPECT_EQ(exact.hash(), open.hash());
+}
+
+// Fast balls fly through a hundred boxes each: what is near their ways is listed by several threads.
+TEST(AllocatorHooks, AreCalledByTheSteppingThreadAlone) {
+    Counter counter;
+    World world = WorldBuilder{}.gravity({0, 0, 0}).workers(4).allocator(counter.hook()).build().value();
+    for (int x = 0; x < 30; ++x)
+        for (int y = 0; y < 30; ++y)
+            ASSERT_TRUE(world.add_static_body({.shape = Box{{0.1f, 0.1f, 0.1f}}, .position = Position(x, y, 0)}));
+    for (int i = 0; i < 200; ++i)
+        ASSERT_TRUE(world.add_rigid_body({.shape = Sphere{0.05f},
+                                          .position = Position(-1.0f, 0.1f * static_cast<float>(i) + 0.5f, 0.5f),
+                                          .velocity = {900.0f, 300.0f, 0}}));
+    run(world, 4);
+    EXPECT_GT(counter.allocations.load(), 10);
+    EXPECT_EQ(counter.strange.load(), 0);
 }
 
 TEST(AllocatorHooks, NeedBothFunctions) {

@@ -122,7 +122,7 @@ export class App {
         showHeading(scene, this.sources.scenes);
         this.list.mark(name);
         this.tuning.show(world.settings());
-        this.tuning.offerThreads(world.kind === "native");
+        this.offerThreads(world);
         const given = link.colours as Colouring;
         this.setColours(colourings.includes(given) ? given : shown.colours ?? "body");
         this.setDrawn(link.draw ?? picture.usual);
@@ -140,6 +140,9 @@ export class App {
         } catch (error) {
             say(`${name}: what collides is drawn (${(error as Error).message})`);
         }
+    }
+    private offerThreads({ kind }: World): void {
+        this.tuning.offerThreads(kind === "native" || (kind === "page" && this.sources.engine?.threads != null));
     }
     setSize(size: number): void {
         const name = this.player.sceneName.split(":")[0];
@@ -198,7 +201,7 @@ export class App {
             this.pointer.forget();
             this.player.install(world, this.player.sceneName);
             this.tuning.show(world.settings());
-            this.tuning.offerThreads(world.kind === "native");
+            this.offerThreads(world);
             this.pick(null);
         });
     }

@@ -25,10 +25,13 @@ export class Sources implements Catalogue {
     static get wantsEngine(): boolean {
         return meta("lendulet-wasm") !== "no";
     }
+    static get hasStream(): boolean {
+        return meta("lendulet-stream") !== null;
+    }
     static async find(engine: Engine | null): Promise<Sources> {
         const sources = new Sources(engine);
         if (engine) sources.take(engine);
-        if (meta("lendulet-stream") !== null) await sources.connect();
+        if (Sources.hasStream) await sources.connect();
         const recording = meta("lendulet-recording"), repro = meta("lendulet-repro");
         if (repro !== null) sources.repro = { name: repro, bytes: await fileBytes("repro") };
         if (recording !== null) {

@@ -73,6 +73,9 @@ export const nativeChecks = {
         const native = await startNative(program, folder, "large_pyramid:6");
         const page = await open({ viewport: { width: 1120, height: 420 } }, "?shadows=0#paused=1", native.url);
         await until(page, () => window.lendulet.player.world?.kind === "native");
+        // Isolated, so that the page's own engine could have threads; it has none while the native one computes.
+        assert.ok(await page.evaluate(() => crossOriginIsolated), "not isolated");
+        assert.equal(await page.evaluate(() => window.lendulet.sources.engine.threads), null);
         const base = await page.evaluate(() => window.lendulet.player.now.length / 8);
         assert.equal(base, 22);
         // The same bits as in the page.

@@ -12,11 +12,13 @@ import { explainChecks } from "./explain.mjs";
 import { fileChecks } from "./files.mjs";
 import { nativeChecks } from "./native.mjs";
 import { serve } from "./server.mjs";
+import { threadChecks } from "./threads.mjs";
 import { toolChecks } from "./tools.mjs";
 
 const [folder, into = "-", words = ""] = process.argv.slice(2);
 const quick = words === "quick";
-const inQuick = ["every scene", "play,", "picking", "balls,", "files: glTF", "tools: all", "explain: a phone"];
+const inQuick = ["every scene", "play,", "picking", "balls,", "files: glTF", "tools: all", "explain: a phone",
+    "threads: native", "threads: without"];
 const images = into === "-" ? null : into;
 if (!folder) {
     console.error("usage: node test/run.mjs FOLDER [IMAGES [WORDS]]");
@@ -36,7 +38,8 @@ const problems = [];
 let forgiven = null; // what the browser may complain of in this check
 const ours = /^(http:\/\/(127\.0\.0\.1|localhost):|ws:\/\/localhost:|data:|blob:)/;
 // A page in which every error and every request that leaves the machine is a failure.
-async function open(options = {}, address = "?shadows=0", url = server.url) {
+// `missing`: a file that the server does not have for it.
+async function open({ missing, ...options } = {}, address = "?shadows=0", url = server.url) {
     const context = await browser.newContext({ viewport: { width: 640, height: 400 }, ...options });
     const page = await context.newPage();
     page.setDefaultTimeout(90000); // the machine may be busy
@@ -47,6 +50,7 @@ async function open(options = {}, address = "?shadows=0", url = server.url) {
     page.on("request", (request) => {
         if (!ours.test(request.url())) problems.push(`asks for ${request.url()}`);
     });
+    if (missing) await page.route(`**/${missing}`, (route) => route.fulfill({ status: 404 }));
     await page.goto(url + address);
     await page.waitForFunction(() => window.lendulet !== undefined, null, { polling: 100 });
     return page;
@@ -60,7 +64,7 @@ const tools = {
 };
 let failed = 0;
 const isChosen = (name) => (quick ? inQuick.some((start) => name.startsWith(start)) : name.includes(words));
-const all = Object.entries({ ...checks, ...explainChecks, ...fileChecks, ...toolChecks, ...nativeChecks });
+const all = [checks, explainChecks, fileChecks, toolChecks, threadChecks, nativeChecks].flatMap(Object.entries);
 const chosen = all.filter(([name]) => isChosen(name));
 for (const [name, check] of chosen) {
     const start = Date.now();

@@ -8,8 +8,11 @@ const types = {
     ".wasm": "application/wasm", ".json": "application/json",
 };
 
-// Resolves to { url, asked, close }; `asked`: paths that were asked for.
-export function serve(folder) {
+// As those servers that let the page's engine share memory between threads.
+const isolated = { "cross-origin-opener-policy": "same-origin", "cross-origin-embedder-policy": "require-corp" };
+
+// Resolves to { url, asked, close }; `asked`: paths that were asked for; `alone`: isolated from other pages.
+export function serve(folder, alone = true) {
     const asked = [];
     const server = createServer((request, response) => {
         const path = decodeURIComponent(new URL(request.url, "http://localhost").pathname);
@@ -19,7 +22,8 @@ export function serve(folder) {
             response.writeHead(404).end();
             return;
         }
-        response.writeHead(200, { "content-type": types[extname(file)] ?? "application/octet-stream" });
+        const type = types[extname(file)] ?? "application/octet-stream";
+        response.writeHead(200, { "content-type": type, ...(alone ? isolated : {}) });
         createReadStream(file).pipe(response);
     });
     return new Promise((resolve) =>

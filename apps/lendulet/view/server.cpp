@@ -89,6 +89,9 @@ Response answer(const Request& request, http::status status, const char* type, s
     response.set(http::field::cache_control, "no-cache");
     response.set("X-Content-Type-Options", "nosniff");
     response.set(http::field::x_frame_options, "DENY");
+    // Isolated from other pages: the engine in the page may share memory between threads.
+    response.set("Cross-Origin-Opener-Policy", "same-origin");
+    response.set("Cross-Origin-Embedder-Policy", "require-corp");
     response.keep_alive(request.keep_alive());
     response.body() = std::move(body);
     response.prepare_payload();

@@ -7,7 +7,8 @@ import {
     type Looks, motionStride, poseStride, Refused, type SceneInfo, type Settings, type Shapes, type Statistics,
     type Surface, type Vec3, type World,
 } from "./types";
-import { Module } from "./module";
+import { Module, type Started } from "./module";
+import { sharedMemory, Threads } from "./threads";
 
 export class Engine extends Module {
     readonly scenes: SceneInfo[] = [];
@@ -15,15 +16,20 @@ export class Engine extends Module {
     readonly choices: string[][] = []; // broad phases, simplex solvers, integrators
 
     static async load(source: BufferSource): Promise<Engine> {
-        return new Engine(await Module.start(source));
+        return new Engine(await Module.start(source), null);
+    }
+    // The module with threads; new worlds get `usual` of them.
+    static async loadShared(source: BufferSource, usual: number): Promise<Engine> {
+        const memory = sharedMemory(), started = await Module.start(source, memory);
+        return new Engine(started, new Threads(started, memory, usual));
     }
 
     // Arguments and results are passed through here.
     private readonly room: number;
     private static readonly roomBytes = 512;
 
-    private constructor(exports: WebAssembly.Exports) {
-        super(exports);
+    private constructor(started: Started, readonly threads: Threads | null) {
+        super(started);
         this.room = this.call("malloc", Engine.roomBytes);
         for (let i = 0; i < this.call("lendulet_scene_count"); ++i)
             this.scenes.push({
@@ -58,14 +64,16 @@ export class Engine extends Module {
         return this.place(slot);
     }
     create(scene: string): PageWorld {
-        const handle = this.withTexts([scene], ([name]) => this.call("lendulet_create_scene", name));
-        if (!handle) throw new Refused(this.error());
-        return new PageWorld(this, handle);
+        return this.made(this.withTexts([scene], ([name]) => this.call("lendulet_create_scene", name)));
     }
     createEmpty(gravity: number): PageWorld {
-        const handle = this.call("lendulet_create_world", gravity);
+        return this.made(this.call("lendulet_create_world", gravity));
+    }
+    private made(handle: number): PageWorld {
         if (!handle) throw new Refused(this.error());
-        return new PageWorld(this, handle);
+        const world = new PageWorld(this, handle);
+        if (this.threads) world.set({ workers: this.threads.usual });
+        return world;
     }
 }
 
@@ -133,11 +141,18 @@ export class PageWorld implements World {
             case "release":
                 e.call("lendulet_release", handle);
                 break;
-            case "set": {
-                putSettings({ ...this.settings(), ...command }, e.buffer, e.place(1));
-                e.checked("lendulet_set_settings", handle, e.place(1));
-            }
+            case "set":
+                this.set(command);
         }
+    }
+    set(changes: Partial<Settings>): void {
+        const { engine: e, handle } = this, settings = { ...this.settings(), ...changes };
+        putSettings(settings, e.buffer, e.place(1));
+        e.checked("lendulet_set_settings", handle, e.place(1));
+        e.threads?.want(settings.workers);
+    }
+    get threads(): number {
+        return Math.min(this.engine.threads?.there ?? 1, this.settings().workers);
     }
     fork(): World {
         const handle = this.engine.call("lendulet_fork", this.handle);

@@ -3,21 +3,34 @@ import { wasiImports } from "./wasi";
 
 type Call = (...values: (number | bigint)[]) => number;
 
-export class Module {
-    protected constructor(private readonly exports: WebAssembly.Exports) {}
+export interface Started {
+    module: WebAssembly.Module;
+    exports: WebAssembly.Exports;
+}
 
-    protected static async start(source: BufferSource): Promise<WebAssembly.Exports> {
+export class Module {
+    private readonly exports: WebAssembly.Exports;
+
+    protected constructor({ exports }: Started) {
+        this.exports = exports;
+    }
+    // `shared`: the memory of a module that does not bring its own.
+    protected static async start(source: BufferSource, shared?: WebAssembly.Memory): Promise<Started> {
         const module = await WebAssembly.compile(source);
         let instance: WebAssembly.Instance;
         const memory = () => instance.exports.memory as WebAssembly.Memory;
-        instance = await WebAssembly.instantiate(module, { wasi_snapshot_preview1: wasiImports(module, memory) });
+        const imports: WebAssembly.Imports = { wasi_snapshot_preview1: wasiImports(module, memory) };
+        if (shared) imports.env = { memory: shared };
+        instance = await WebAssembly.instantiate(module, imports);
         (instance.exports._initialize as () => void)();
-        return instance.exports;
+        return { module, exports: instance.exports };
     }
 
     call(name: string, ...values: (number | bigint)[]): number {
         return (this.exports[name] as unknown as Call)(...values);
     }
+    // Where memory is shared this is a SharedArrayBuffer, of which what is kept or decoded must be copied first; it is
+    // used like another one. Asked for anew each time, since memory grows.
     get buffer(): ArrayBuffer {
         return (this.exports.memory as WebAssembly.Memory).buffer;
     }

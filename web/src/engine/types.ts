@@ -158,6 +158,7 @@ export interface World {
     readonly time: number;
     readonly stepCount: number;
     readonly looks?: Looks;
+    readonly threads?: number; // that make its steps, where they are the page's
     readonly hash: string; // sixteen hexadecimal digits, as `lendulet run` prints them; "" where it is not known
     readonly busy: boolean; // something that was asked for is still to come
     readonly ahead: number; // steps among it: what is done now is done after them

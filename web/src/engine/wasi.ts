@@ -27,6 +27,7 @@ export function wasiImports(module: WebAssembly.Module, memory: () => WebAssembl
         },
     };
     const imports: WebAssembly.ModuleImports = {};
-    for (const entry of WebAssembly.Module.imports(module)) imports[entry.name] = known[entry.name] ?? (() => badFile);
+    for (const { kind, name } of WebAssembly.Module.imports(module))
+        if (kind === "function") imports[name] = known[name] ?? (() => badFile);
     return imports;
 }

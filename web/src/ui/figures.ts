@@ -42,7 +42,8 @@ export class Figures {
         this.numbers.set("frames", `${this.rate.toFixed(0)} /s`);
         this.numbers.set("drawn", `by ${this.drawnBy}`);
         const where = { page: "in the page", native: "natively", recording: "long ago" };
-        this.numbers.set("computed", where[player.world.kind]);
+        const { kind, threads = 1 } = player.world;
+        this.numbers.set("computed", where[kind] + (threads > 1 ? ` by ${threads} threads` : ""));
         if (player.twin) {
             const same = player.twin.hash === player.world.hash;
             element("apart").textContent = same ? "same bits so far" : `${amount(player.apart, "m")} apart`;

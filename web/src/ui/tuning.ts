@@ -62,10 +62,11 @@ export class Tuning {
             if (input !== document.activeElement || input instanceof HTMLSelectElement)
                 input.value = String(Number(read(settings).toPrecision(5)));
     }
-    // Threads are the native engine's: the module in the page has none.
+    // The engine in the page has threads where the page may share memory.
     offerThreads(there: boolean): void {
         const field = element<HTMLInputElement>("set-threads");
         field.disabled = !there;
-        field.title = there ? "" : "The engine in the page has one thread; ./dev view has many.";
+        const more = globalThis.crossOriginIsolated ? "?threads=2 in the address asks for two" : "./dev view has many";
+        field.title = there ? "" : `The engine in this page has one thread; ${more}.`;
     }
 }
