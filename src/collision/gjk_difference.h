@@ -25,10 +25,9 @@ inline Vec3d support_point(const Geometry& g, Vec3d d) {
         case GeometryKind::point:
             return {};
         case GeometryKind::segment:
-            return {0.0, d.y < 0.0 ? -g.size.y : g.size.y, 0.0};
+            return {0.0, towards_sign(g.size.y, d.y), 0.0};
         case GeometryKind::box:
-            return {d.x < 0.0 ? -g.size.x : g.size.x, d.y < 0.0 ? -g.size.y : g.size.y,
-                    d.z < 0.0 ? -g.size.z : g.size.z};
+            return {towards_sign(g.size.x, d.x), towards_sign(g.size.y, d.y), towards_sign(g.size.z, d.z)};
         case GeometryKind::tapered_capsule: {
             double r = length(d), bottom = g.size.x * r - g.size.y * d.y, top = g.size.z * r + g.size.y * d.y;
             double end = top >= bottom ? 1.0 : -1.0, s = (top >= bottom ? g.size.z : g.size.x) / r;
