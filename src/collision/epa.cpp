@@ -1,5 +1,6 @@
 // The expanding polytope: a first tetrahedron, expansion at the nearest face, and two finishes for round differences,
-// whose surface no polytope reaches. In: a simplex of GJK that holds the origin. Out: depth, normal, witness points.
+// whose surface no polytope reaches. In: a simplex of GJK that holds the origin. Out: depth, normal, witness points, and
+// the simplex to begin with next time.
 #include "collision/epa.h"
 
 #include "collision/epa_minima.h"
@@ -137,12 +138,13 @@ struct SmoothMinimum {
 };
 
 // The foot of the origin on the plane of face f. A face of the difference may be several coplanar triangles: the foot
-// lies in one of them.
-void foot_on_face(const CoreDifference& difference, const Polytope& polytope, int f, double tolerance,
-                  Penetration& result) {
+// lies in one of them, which is returned.
+int foot_on_face(const CoreDifference& difference, const Polytope& polytope, int f, double tolerance,
+                 Penetration& result) {
     const Vec3d n = polytope.normal(f);
     const double distance = polytope.distance(f, n), sideways = 1e-7 * difference.size;
     double least = 1e300;
+    int best = f;
     for (int g = f, next = 0; g < polytope.face_end(); g = next++) {
         if (!polytope.alive(g)) continue;
         const Vec3d m = polytope.normal(g);
@@ -151,10 +153,12 @@ void foot_on_face(const CoreDifference& difference, const Polytope& polytope, in
         SubSimplex part = closest_barycentric(corners.y, 3);
         if (!(length_squared(part.point) < least)) continue;
         least = length_squared(part.point);
+        best = g;
         result.y = part.point;
         result.point_a = difference.witness_on_a(corners, part.index, part.weight, part.count);
-        if (least - distance * distance <= sideways * sideways) return;
+        if (least - distance * distance <= sideways * sideways) break;
     }
+    return best;
 }
 
 // The nearest point should lie as far from the origin as the depth says. Where the last face or round misses that, the
@@ -169,7 +173,7 @@ void improve_point(const CoreDifference& difference, Penetration& result) {
 }  // namespace
 
 template <class Observer>
-Penetration expand_polytope(const CoreDifference& difference, const Simplex& simplex, Vec3d hint, Observer& observer) {
+Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, Vec3d hint, Observer& observer) {
     Penetration result;
     Simplex s = simplex;
     if (!make_tetrahedron(difference, s, hint, result)) return result;
@@ -196,7 +200,10 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
             result = search_minima(difference, polytope, is_smooth ? t.height : 1e300, expansions);
         } else {
             result = {depth, n, {}, {}, gap, expansions};
-            if (!is_smooth) foot_on_face(difference, polytope, f, tolerance, result);
+            if (!is_smooth) {
+                simplex = polytope.triangle(foot_on_face(difference, polytope, f, tolerance, result));
+                simplex.add(polytope.farthest(-n));
+            }
         }
         if (smooth.found && t.height <= result.depth + tangent * size)
             result = {t.height, t.direction, t.p.y, snap_to_core(difference.a, to_double(t.p.a)), t.miss, expansions};
@@ -205,9 +212,9 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
     }
 }
 
-template Penetration expand_polytope(const CoreDifference&, const Simplex&, Vec3d, Recorder&);
+template Penetration expand_polytope(const CoreDifference&, Simplex&, Vec3d, Recorder&);
 
-Penetration expand_polytope(const CoreDifference& difference, const Simplex& simplex, Vec3d hint) {
+Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, Vec3d hint) {
     SilentObserver silent;
     return expand_polytope(difference, simplex, hint, silent);
 }

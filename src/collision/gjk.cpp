@@ -62,10 +62,10 @@ Search search_as(SilentObserver&, const CoreDifference& d, Simplex& s, SimplexSo
 Search search_as(Recorder& r, const CoreDifference& d, Simplex& s, SimplexSolver method, double max_distance) {
     return search(d, s, method, max_distance, r);
 }
-Penetration expand_as(SilentObserver&, const CoreDifference& d, const Simplex& s) {
+Penetration expand_as(SilentObserver&, const CoreDifference& d, Simplex& s) {
     return expand_polytope(d, s, d.centre());
 }
-Penetration expand_as(Recorder& r, const CoreDifference& d, const Simplex& s) {
+Penetration expand_as(Recorder& r, const CoreDifference& d, Simplex& s) {
     return expand_polytope(d, s, d.centre(), r);
 }
 
