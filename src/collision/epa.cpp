@@ -126,14 +126,16 @@ struct SmoothMinimum {
     bool found = false;
     double try_below;
 
-    void look(const CoreDifference& difference, Vec3d direction, double lower, double gap) {
-        if (gap > try_below) return;
+    // True where one is found that is less deep than the last.
+    bool look(const CoreDifference& difference, Vec3d direction, double lower, double gap) {
+        if (gap > try_below) return false;
         try_below = 0.1 * gap;
         Tangency t = find_tangency(difference, direction);
         bool valid = t.miss <= tangent * difference.size && t.height > lower - tangent * difference.size;
-        if (!valid || (found && t.height >= tangency.height)) return;
+        if (!valid || (found && t.height >= tangency.height)) return false;
         found = true;
         tangency = t;
+        return true;
     }
 };
 
@@ -188,8 +190,12 @@ Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, 
         const Vec3d n = polytope.normal(f);
         observer.polytope(polytope, f, p);
         double lower = polytope.distance(f, n), upper = dot(n, p.y), gap = upper - lower;
-        smooth.look(difference, n, lower, gap);
+        const bool nearer = smooth.look(difference, n, lower, gap);
         bool proven = smooth.found && smooth.tangency.height - lower <= surface_smooth * size;
+        // The faces around the nearest point itself are nearly as far away as it: far fewer are needed to prove it.
+        if (nearer && !proven && expansions < max_expansions && dot(n, smooth.tangency.p.y) > lower + tolerance &&
+            polytope.expand(f, smooth.tangency.p))
+            continue;
         bool last = proven || !(gap > tolerance) || expansions == max_expansions ||
                     (gap < repeated * size && polytope.holds(p.y)) || !polytope.expand(f, p);
         if (!last) continue;

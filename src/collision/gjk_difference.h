@@ -57,7 +57,7 @@ inline bool is_curved(const Geometry& g) {
 }
 
 // The point of the core's curved surface that p was before it was rounded to float: supports lie on the rim or at the
-// centre of a cap, or on one of the two balls.
+// centre of a cap, or on one of the two balls. Points of flats and sides stay as they are.
 inline Vec3d snap_to_core(const Geometry& g, Vec3d p) {
     if (!is_curved(g)) return p;
     Vec3d bottom{p.x, p.y + g.size.y, p.z}, top{p.x, p.y - g.size.y, p.z};
@@ -68,7 +68,9 @@ inline Vec3d snap_to_core(const Geometry& g, Vec3d p) {
     Vec3d q = at_top ? top : bottom;
     double r = at_top ? rt : rb, radius = at_top ? g.size.z : g.size.x;
     Vec3d centre{0.0, at_top ? g.size.y : -g.size.y, 0.0};
-    return r > 0.5 * radius ? centre + (radius / r) * q : centre;
+    const Vec3d snapped = r > 0.5 * radius ? centre + (radius / r) * q : centre;
+    constexpr double rounding = 2e-7;  // of the size
+    return largest_component(snapped - p) <= rounding * (g.size.y + radius) ? snapped : p;
 }
 
 // Largest coordinate of the core's points, for tolerances.
