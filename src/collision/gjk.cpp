@@ -3,6 +3,7 @@
 #include "collision/gjk.h"
 
 #include "collision/epa.h"
+#include "collision/gjk_newton.h"
 #include "collision/gjk_search.h"
 #include "collision/trace.h"
 
@@ -69,14 +70,29 @@ Penetration expand_as(Recorder& r, const CoreDifference& d, Simplex& s) {
     return expand_polytope(d, s, d.centre(), r);
 }
 
+// Where a flat or a side of a curved core gave the last normal it mostly gives the next one too: apart, its two points
+// prove themselves.
+bool still_apart(const CoreDifference& difference, GjkCache& cache, ConvexDistance& result) {
+    Tangency t;
+    if (!difference.curved || cache.count == 0) return false;
+    if (!find_tangency_of_features(difference, -to_double(cache.direction), t) || t.height > 0.0) return false;
+    Simplex s;
+    s.add(t.p);
+    s.weight[0] = 1.0;
+    result = result_apart(difference, s, {Outcome::apart, t.p.y, -t.direction, -t.height, 0.0, 0});
+    cache.direction = result.normal;
+    return true;
+}
+
 template <class Observer>
 LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCache& cache, SimplexSolver method,
                                                  float max_distance, Observer& observer) {
     const CoreDifference difference(pair);
+    ConvexDistance result;
+    if (still_apart(difference, cache, result)) return result;
     Simplex s;
     start(difference, cache, s);
     Search found = search_as(observer, difference, s, method, max_distance);
-    ConvexDistance result;
     // Rounding in slivers of simplices can end the search early or take the origin for enclosed. Neither goes
     // unnoticed: the bounds of the distance stay apart, or the depth comes out negative. The polytope then settles the
     // one, and a new search from its separating direction the other.
