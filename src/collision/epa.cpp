@@ -5,7 +5,6 @@
 
 #include "collision/epa_minima.h"
 #include "collision/epa_polytope.h"
-#include "collision/gjk_newton.h"
 #include "collision/simplex.h"
 #include "collision/trace.h"
 
@@ -172,18 +171,12 @@ void improve_point(const CoreDifference& difference, Penetration& result) {
     result.point_a = snap_to_core(difference.a, to_double(p.a));
 }
 
-}  // namespace
-
+// The polytope grows until it proves the depth.
 template <class Observer>
-Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, Vec3d hint, Observer& observer) {
+Penetration expand(const CoreDifference& difference, Polytope& polytope, SmoothMinimum& smooth, Simplex& simplex,
+                   Observer& observer) {
     Penetration result;
-    Simplex s = simplex;
-    if (!make_tetrahedron(difference, s, hint, result)) return result;
-
-    Polytope polytope;
-    polytope.start(s, merge * difference.size);
     const double size = difference.size, tolerance = (difference.curved ? surface_curved : surface) * size;
-    SmoothMinimum smooth{{}, false, difference.curved ? 0.1 * size : -1.0};
     for (int expansions = 0;; ++expansions) {
         int f = polytope.nearest_face();
         DifferencePoint p = difference.support(polytope.direction(f));  // does not wait for the normal's square root
@@ -216,6 +209,55 @@ Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, 
         else if (difference.curved) improve_point(difference, result);
         return result;
     }
+}
+
+// Takes a point that lies beyond one of the first four faces.
+void take_beyond(Polytope& polytope, const DifferencePoint& p, double tolerance) {
+    int best = 0;
+    double most = tolerance;
+    for (int f = 0; f < 4; ++f) {
+        const Vec3d n = polytope.normal(f);
+        const double above = dot(n, p.y) - polytope.distance(f, n);
+        if (above > most) most = above, best = f;
+    }
+    if (most > tolerance) polytope.expand(best, p);
+}
+
+}  // namespace
+
+template <class Observer>
+Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, Vec3d hint, Observer& observer) {
+    Penetration result;
+    Simplex s = simplex;
+    if (!make_tetrahedron(difference, s, hint, result)) return result;
+    Polytope polytope;
+    polytope.start(s, merge * difference.size);
+    SmoothMinimum smooth{{}, false, difference.curved ? 0.1 * difference.size : -1.0};
+    return expand(difference, polytope, smooth, simplex, observer);
+}
+
+bool expand_around(const CoreDifference& difference, const Tangency& known, Simplex& simplex, Penetration& out) {
+    // As far around as a surface that bends as much as the difference must at its nearest point may be left uncut: a
+    // face that leans by half the angle there is nearer by the square of that.
+    constexpr double widest = 0.5;  // rad
+    const double size = difference.size;
+    const double lean = minimum(widest, square_root(8.0 * 0.25 * surface_smooth * size / known.height));
+    const Vec3d n = known.direction;
+    Vec3d p, q;
+    complete_frame(n, p, q);
+    simplex.count = 0;
+    simplex.add(difference.support(n + lean * p));
+    simplex.add(difference.support(n - (0.5 * lean) * p + (0.8660254 * lean) * q));
+    simplex.add(difference.support(n - (0.5 * lean) * p - (0.8660254 * lean) * q));
+    simplex.add(difference.support(-n));
+    if (!spans_well(simplex)) return false;
+    Polytope polytope;
+    polytope.start(simplex, merge * size);
+    take_beyond(polytope, known.p, surface_curved * size);
+    SmoothMinimum smooth{known, true, 0.0};
+    SilentObserver silent;
+    out = expand(difference, polytope, smooth, simplex, silent);
+    return true;
 }
 
 template Penetration expand_polytope(const CoreDifference&, Simplex&, Vec3d, Recorder&);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "collision/gjk_difference.h"
+#include "collision/gjk_newton.h"
 
 namespace lendulet {
 
@@ -26,5 +27,9 @@ Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, 
 // The same with an observer of trace.h, which is told each polytope and the point that it takes next.
 template <class Observer>
 Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, Vec3d hint, Observer& observer);
+
+// Where the nearest point is known but for the proof: the polytope begins with it and points around and opposite to it,
+// which are left in `simplex`. False where these do not enclose the origin.
+bool expand_around(const CoreDifference& difference, const Tangency& known, Simplex& simplex, Penetration& out);
 
 }  // namespace lendulet

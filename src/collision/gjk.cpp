@@ -71,16 +71,23 @@ Penetration expand_as(Recorder& r, const CoreDifference& d, Simplex& s) {
 }
 
 // Where a flat or a side of a curved core gave the last normal it mostly gives the next one too: apart, its two points
-// prove themselves.
-bool still_apart(const CoreDifference& difference, GjkCache& cache, ConvexDistance& result) {
+// prove themselves; overlapping, a small polytope does.
+bool is_as_before(const CoreDifference& difference, GjkCache& cache, ConvexDistance& result) {
     Tangency t;
     if (!difference.curved || cache.count == 0) return false;
-    if (!find_tangency_of_features(difference, -to_double(cache.direction), t) || t.height > 0.0) return false;
+    if (!find_tangency_of_features(difference, -to_double(cache.direction), t)) return false;
     Simplex s;
-    s.add(t.p);
-    s.weight[0] = 1.0;
-    result = result_apart(difference, s, {Outcome::apart, t.p.y, -t.direction, -t.height, 0.0, 0});
-    cache.direction = result.normal;
+    if (t.height > 0.0) {
+        Penetration deep;
+        if (!expand_around(difference, t, s, deep)) return false;
+        result = result_overlapping(difference, deep, 0);
+        remember(s, result.normal, cache);
+    } else {
+        s.add(t.p);
+        s.weight[0] = 1.0;
+        result = result_apart(difference, s, {Outcome::apart, t.p.y, -t.direction, -t.height, 0.0, 0});
+        cache.direction = result.normal;
+    }
     return true;
 }
 
@@ -89,7 +96,7 @@ LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCach
                                                  float max_distance, Observer& observer) {
     const CoreDifference difference(pair);
     ConvexDistance result;
-    if (still_apart(difference, cache, result)) return result;
+    if (is_as_before(difference, cache, result)) return result;
     Simplex s;
     start(difference, cache, s);
     Search found = search_as(observer, difference, s, method, max_distance);
