@@ -11,7 +11,7 @@ namespace lendulet {
 namespace {
 
 // Relative to S .
-constexpr double certified_depth = 5e-6;
+constexpr double certified_depth = 5e-6, certified_tangent = 1e-9;
 constexpr uint8_t all_points[4] = {0, 1, 2, 3};
 
 void start(const CoreDifference& difference, const GjkCache& cache, Simplex& s) {
@@ -75,7 +75,12 @@ Penetration expand_as(Recorder& r, const CoreDifference& d, Simplex& s) {
 bool is_as_before(const CoreDifference& difference, GjkCache& cache, ConvexDistance& result) {
     Tangency t;
     if (!difference.curved || cache.count == 0) return false;
-    if (!find_tangency_of_features(difference, -to_double(cache.direction), t)) return false;
+    const Vec3d outward = -to_double(cache.direction);
+    if (!find_tangency_of_features(difference, outward, t)) {
+        if (!is_curved(difference.a) || !is_curved(difference.b)) return false;
+        t = find_smooth_tangency(difference, outward);
+        if (!(t.miss <= certified_tangent * difference.size)) return false;
+    }
     Simplex s;
     if (t.height > 0.0) {
         Penetration deep;

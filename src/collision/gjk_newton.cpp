@@ -4,7 +4,7 @@ namespace lendulet {
 
 // Looks for the direction d whose support point y lies on the line through the origin along d. The tangential part of
 // y(d) - h(d) d vanishes there; its derivative along t is y'(t) - h t, taken by differences.
-static Tangency newton(const CoreDifference& difference, Vec3d direction) {
+Tangency find_smooth_tangency(const CoreDifference& difference, Vec3d direction) {
     constexpr int max_rounds = 6;
     constexpr double step = 1e-5, accepted = 1e-12;  // rad; of S
     Tangency now{direction, {}, 0.0, 0.0};
@@ -26,11 +26,6 @@ static Tangency newton(const CoreDifference& difference, Vec3d direction) {
         Vec3d next = d + (limit * a1) * t1 + (limit * a2) * t2;
         now.direction = (1.0 / length(next)) * next;
     }
-}
-
-Tangency find_tangency(const CoreDifference& difference, Vec3d direction) {
-    Tangency t;
-    return find_tangency_of_features(difference, direction, t) ? t : newton(difference, direction);
 }
 
 }  // namespace lendulet

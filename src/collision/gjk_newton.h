@@ -21,12 +21,19 @@ struct Tangency {
     double miss;        // how far p.y lies from the line along the direction
 };
 
-// Looks near a unit direction for one whose support point lies on the line through the origin along it.
-Tangency find_tangency(const CoreDifference& difference, Vec3d direction);
+// Looks near a unit direction for one whose support point lies on the line through the origin along it, by Newton's
+// method.
+Tangency find_smooth_tangency(const CoreDifference& difference, Vec3d direction);
 
 // The same where a cap, the side of a cylinder or cone or the face of a box meets the other core: there the support
 // point jumps, but the feature tells the direction. Tried where `direction` is within a few degrees of such a normal;
 // false where none is, or what it faces lies beside the feature.
 bool find_tangency_of_features(const CoreDifference& difference, Vec3d direction, Tangency& out);
+
+// The one or the other.
+inline Tangency find_tangency(const CoreDifference& difference, Vec3d direction) {
+    Tangency t;
+    return find_tangency_of_features(difference, direction, t) ? t : find_smooth_tangency(difference, direction);
+}
 
 }  // namespace lendulet
