@@ -1,6 +1,6 @@
 // The expanding polytope: a first tetrahedron, expansion at the nearest face, and two finishes for round differences,
-// whose surface no polytope reaches. In: a simplex of GJK that holds the origin. Out: depth, normal, witness points, and
-// the simplex to begin with next time.
+// whose surface no polytope reaches. In: a simplex of GJK that holds the origin. Out: depth, normal, witness points,
+// and the simplex to begin with next time.
 #include "collision/epa.h"
 
 #include "collision/epa_minima.h"

@@ -66,9 +66,7 @@ Search search_as(Recorder& r, const CoreDifference& d, Simplex& s, SimplexSolver
 Penetration expand_as(SilentObserver&, const CoreDifference& d, Simplex& s) {
     return expand_polytope(d, s, d.centre());
 }
-Penetration expand_as(Recorder& r, const CoreDifference& d, Simplex& s) {
-    return expand_polytope(d, s, d.centre(), r);
-}
+Penetration expand_as(Recorder& r, const CoreDifference& d, Simplex& s) { return expand_polytope(d, s, d.centre(), r); }
 
 // Where a flat or a side of a curved core gave the last normal it mostly gives the next one too: apart, its two points
 // prove themselves; overlapping, a small polytope does.

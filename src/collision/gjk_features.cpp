@@ -1,6 +1,6 @@
-// Directions that a flat or ruled feature of a core gives: the normal of a cap or of a box's face, and of a side the one
-// in which it meets the other core. In: a direction near it. Out: the direction with its two points, if they lie within
-// the cores; the supports along it then prove that nothing is nearer.
+// Directions that a flat or ruled feature of a core gives: the normal of a cap or of a box's face, and of a side the
+// one in which it meets the other core. In: a direction near it. Out: the direction with its two points, if they lie
+// within the cores; the supports along it then prove that nothing is nearer.
 #include "collision/gjk_newton.h"
 
 namespace lendulet {

@@ -182,8 +182,8 @@ TEST(GjkCurved, ValleysAndRimsThatOnceMisledAreCertified) {
         }
 }
 
-// A capsule lies between two edges of a tetrahedron and is nearly as deep in both: where the search begins decides which
-// faces the polytope gets, but not which edge is found.
+// A capsule lies between two edges of a tetrahedron and is nearly as deep in both: where the search begins decides
+// which faces the polytope gets, but not which edge is found.
 TEST(GjkCurved, DepthDoesNotDependOnWhereTheSearchBegins) {
     Core a = make_hull({{0.541480243f, 0.655487239f, 0.145861834f},
                         {-0.0411983281f, -0.501353323f, -0.125439584f},
