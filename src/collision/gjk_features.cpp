@@ -110,7 +110,7 @@ bool meet(const View& view, Vec3d d, Meeting& m) {
         if (!crossed && !turn_towards(view, side, d, m)) return false;
     } else if (g.kind == GeometryKind::tapered_cylinder || g.kind == GeometryKind::box) {
         const double most = largest_component(d);
-        if (most < flat_cosine) return false;
+        if (!(most >= flat_cosine)) return false;
         auto axis = [&](double a) { return absolute(a) == most ? sign_of(a) : 0.0; };
         m.n = {axis(d.x), axis(d.y), axis(d.z)};
         m.on_other = view.support_of_other(-m.n);
