@@ -44,22 +44,31 @@ Corner crossing(const Corner& from, const Corner& to, float t, int side, const F
     return c;
 }
 
-int clip_by_side(const Corner* in, int count, const Side& side, int index, const Face& reference, const Face& incident,
-                 Corner* out) {
+// Distances of the corners from a side; the least of them.
+float distances_from(const Side& side, const Corner* in, int count, float* out) {
+    float least = out[0] = side.distance(in[0]);
+    for (int i = 1; i < count; ++i) {
+        out[i] = side.distance(in[i]);
+        least = minimum(out[i], least);
+    }
+    return least;
+}
+
+// `distance`: of the corners from the side.
+int clip_by_side(const Corner* in, int count, const float* distance, int index, const Face& reference,
+                 const Face& incident, Corner* out) {
     int kept = 0;
-    float d = side.distance(in[0]);
     for (int i = 0; i < count; ++i) {
-        const Corner& next = in[next_of(i, count)];
-        float d_next = side.distance(next);
+        const int k = next_of(i, count);
+        const float d = distance[i], d_next = distance[k];
         bool inside = d >= 0.0f, inside_next = d_next >= 0.0f;
         // A convex polygon gains one corner a side at most; round-off in slivers must not overrun the buffer.
         if (inside && kept < max_clipped_points) out[kept++] = in[i];
         if (inside != inside_next && kept < max_clipped_points) {
-            Corner c = crossing(in[i], next, d / (d - d_next), index, reference, incident);
+            Corner c = crossing(in[i], in[k], d / (d - d_next), index, reference, incident);
             if (inside) c.edge = first_side + index;
             out[kept++] = c;
         }
-        d = d_next;
     }
     return kept;
 }
@@ -144,10 +153,13 @@ LENDULET_FORCE_INLINE void clip(const Face& reference, const Face& incident, boo
         from = b;
         observer.clip_side(reference.count - 1, b, count);
     } else {
+        float distance[max_clipped_points];
         for (int i = 0; i < side_count && count > 0; ++i) {
-            count = clip_by_side(from, count, sides[i], i, reference, incident, to);
-            Corner* swap = from;
-            from = to, to = swap;
+            if (!(distances_from(sides[i], from, count, distance) >= 0.0f)) {  // else it cuts nothing
+                count = clip_by_side(from, count, distance, i, reference, incident, to);
+                Corner* swap = from;
+                from = to, to = swap;
+            }
             observer.clip_side(i, from, count);
         }
     }

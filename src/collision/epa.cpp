@@ -1,10 +1,10 @@
 // The expanding polytope: a first tetrahedron, expansion at the nearest face, and two finishes for round differences,
-// whose surface no polytope reaches. In: a simplex of GJK that holds the origin. Out: depth, normal, witness points.
+// whose surface no polytope reaches. In: a simplex of GJK that holds the origin. Out: depth, normal, witness points,
+// and the simplex to begin with next time.
 #include "collision/epa.h"
 
 #include "collision/epa_minima.h"
 #include "collision/epa_polytope.h"
-#include "collision/gjk_newton.h"
 #include "collision/simplex.h"
 #include "collision/trace.h"
 
@@ -125,24 +125,27 @@ struct SmoothMinimum {
     bool found = false;
     double try_below;
 
-    void look(const CoreDifference& difference, Vec3d direction, double lower, double gap) {
-        if (gap > try_below) return;
+    // True where one is found that is less deep than the last.
+    bool look(const CoreDifference& difference, Vec3d direction, double lower, double gap) {
+        if (gap > try_below) return false;
         try_below = 0.1 * gap;
         Tangency t = find_tangency(difference, direction);
         bool valid = t.miss <= tangent * difference.size && t.height > lower - tangent * difference.size;
-        if (!valid || (found && t.height >= tangency.height)) return;
+        if (!valid || (found && t.height >= tangency.height)) return false;
         found = true;
         tangency = t;
+        return true;
     }
 };
 
 // The foot of the origin on the plane of face f. A face of the difference may be several coplanar triangles: the foot
-// lies in one of them.
-void foot_on_face(const CoreDifference& difference, const Polytope& polytope, int f, double tolerance,
-                  Penetration& result) {
+// lies in one of them, which is returned.
+int foot_on_face(const CoreDifference& difference, const Polytope& polytope, int f, double tolerance,
+                 Penetration& result) {
     const Vec3d n = polytope.normal(f);
     const double distance = polytope.distance(f, n), sideways = 1e-7 * difference.size;
     double least = 1e300;
+    int best = f;
     for (int g = f, next = 0; g < polytope.face_end(); g = next++) {
         if (!polytope.alive(g)) continue;
         const Vec3d m = polytope.normal(g);
@@ -151,10 +154,12 @@ void foot_on_face(const CoreDifference& difference, const Polytope& polytope, in
         SubSimplex part = closest_barycentric(corners.y, 3);
         if (!(length_squared(part.point) < least)) continue;
         least = length_squared(part.point);
+        best = g;
         result.y = part.point;
         result.point_a = difference.witness_on_a(corners, part.index, part.weight, part.count);
-        if (least - distance * distance <= sideways * sideways) return;
+        if (least - distance * distance <= sideways * sideways) break;
     }
+    return best;
 }
 
 // The nearest point should lie as far from the origin as the depth says. Where the last face or round misses that, the
@@ -166,26 +171,24 @@ void improve_point(const CoreDifference& difference, Penetration& result) {
     result.point_a = snap_to_core(difference.a, to_double(p.a));
 }
 
-}  // namespace
-
+// The polytope grows until it proves the depth.
 template <class Observer>
-Penetration expand_polytope(const CoreDifference& difference, const Simplex& simplex, Vec3d hint, Observer& observer) {
+Penetration expand(const CoreDifference& difference, Polytope& polytope, SmoothMinimum& smooth, Simplex& simplex,
+                   Observer& observer) {
     Penetration result;
-    Simplex s = simplex;
-    if (!make_tetrahedron(difference, s, hint, result)) return result;
-
-    Polytope polytope;
-    polytope.start(s, merge * difference.size);
     const double size = difference.size, tolerance = (difference.curved ? surface_curved : surface) * size;
-    SmoothMinimum smooth{{}, false, difference.curved ? 0.1 * size : -1.0};
     for (int expansions = 0;; ++expansions) {
         int f = polytope.nearest_face();
         DifferencePoint p = difference.support(polytope.direction(f));  // does not wait for the normal's square root
         const Vec3d n = polytope.normal(f);
         observer.polytope(polytope, f, p);
         double lower = polytope.distance(f, n), upper = dot(n, p.y), gap = upper - lower;
-        smooth.look(difference, n, lower, gap);
+        const bool nearer = smooth.look(difference, n, lower, gap);
         bool proven = smooth.found && smooth.tangency.height - lower <= surface_smooth * size;
+        // The faces around the nearest point itself are nearly as far away as it: far fewer are needed to prove it.
+        if (nearer && !proven && expansions < max_expansions && dot(n, smooth.tangency.p.y) > lower + tolerance &&
+            polytope.expand(f, smooth.tangency.p))
+            continue;
         bool last = proven || !(gap > tolerance) || expansions == max_expansions ||
                     (gap < repeated * size && polytope.holds(p.y)) || !polytope.expand(f, p);
         if (!last) continue;
@@ -196,7 +199,10 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
             result = search_minima(difference, polytope, is_smooth ? t.height : 1e300, expansions);
         } else {
             result = {depth, n, {}, {}, gap, expansions};
-            if (!is_smooth) foot_on_face(difference, polytope, f, tolerance, result);
+            if (!is_smooth) {
+                simplex = polytope.triangle(foot_on_face(difference, polytope, f, tolerance, result));
+                simplex.add(polytope.farthest(-n));
+            }
         }
         if (smooth.found && t.height <= result.depth + tangent * size)
             result = {t.height, t.direction, t.p.y, snap_to_core(difference.a, to_double(t.p.a)), t.miss, expansions};
@@ -205,9 +211,58 @@ Penetration expand_polytope(const CoreDifference& difference, const Simplex& sim
     }
 }
 
-template Penetration expand_polytope(const CoreDifference&, const Simplex&, Vec3d, Recorder&);
+// Takes a point that lies beyond one of the first four faces.
+void take_beyond(Polytope& polytope, const DifferencePoint& p, double tolerance) {
+    int best = 0;
+    double most = tolerance;
+    for (int f = 0; f < 4; ++f) {
+        const Vec3d n = polytope.normal(f);
+        const double above = dot(n, p.y) - polytope.distance(f, n);
+        if (above > most) most = above, best = f;
+    }
+    if (most > tolerance) polytope.expand(best, p);
+}
 
-Penetration expand_polytope(const CoreDifference& difference, const Simplex& simplex, Vec3d hint) {
+}  // namespace
+
+template <class Observer>
+Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, Vec3d hint, Observer& observer) {
+    Penetration result;
+    Simplex s = simplex;
+    if (!make_tetrahedron(difference, s, hint, result)) return result;
+    Polytope polytope;
+    polytope.start(s, merge * difference.size);
+    SmoothMinimum smooth{{}, false, difference.curved ? 0.1 * difference.size : -1.0};
+    return expand(difference, polytope, smooth, simplex, observer);
+}
+
+bool expand_around(const CoreDifference& difference, const Tangency& known, Simplex& simplex, Penetration& out) {
+    // As far around as a surface that bends as much as the difference must at its nearest point may be left uncut: a
+    // face that leans by half the angle there is nearer by the square of that.
+    constexpr double widest = 0.5;  // rad
+    const double size = difference.size;
+    const double lean = minimum(widest, square_root(8.0 * 0.25 * surface_smooth * size / known.height));
+    const Vec3d n = known.direction;
+    Vec3d p, q;
+    complete_frame(n, p, q);
+    simplex.count = 0;
+    simplex.add(difference.support(n + lean * p));
+    simplex.add(difference.support(n - (0.5 * lean) * p + (0.8660254 * lean) * q));
+    simplex.add(difference.support(n - (0.5 * lean) * p - (0.8660254 * lean) * q));
+    simplex.add(difference.support(-n));
+    if (!spans_well(simplex)) return false;
+    Polytope polytope;
+    polytope.start(simplex, merge * size);
+    take_beyond(polytope, known.p, surface_curved * size);
+    SmoothMinimum smooth{known, true, 0.0};
+    SilentObserver silent;
+    out = expand(difference, polytope, smooth, simplex, silent);
+    return true;
+}
+
+template Penetration expand_polytope(const CoreDifference&, Simplex&, Vec3d, Recorder&);
+
+Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, Vec3d hint) {
     SilentObserver silent;
     return expand_polytope(difference, simplex, hint, silent);
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "collision/gjk_difference.h"
+#include "collision/gjk_newton.h"
 
 namespace lendulet {
 
@@ -19,10 +20,16 @@ struct Penetration {
 };
 
 // `simplex` holds the origin, or touches it to within rounding; flat differences (two segments that cross, coplanar
-// polygons) give depth 0 with a normal perpendicular to them. `hint` breaks the tie of the two sides.
-Penetration expand_polytope(const CoreDifference& difference, const Simplex& simplex, Vec3d hint);
+// polygons) give depth 0 with a normal perpendicular to them. `hint` breaks the tie of the two sides. Where the nearest
+// point lies in a face of the difference, its corners and a point opposite to it are left in `simplex`: near this pose
+// they are a polytope that proves the depth with one more support point.
+Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, Vec3d hint);
 // The same with an observer of trace.h, which is told each polytope and the point that it takes next.
 template <class Observer>
-Penetration expand_polytope(const CoreDifference& difference, const Simplex& simplex, Vec3d hint, Observer& observer);
+Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, Vec3d hint, Observer& observer);
+
+// Where the nearest point is known but for the proof: the polytope begins with it and points around and opposite to it,
+// which are left in `simplex`. False where these do not enclose the origin.
+bool expand_around(const CoreDifference& difference, const Tangency& known, Simplex& simplex, Penetration& out);
 
 }  // namespace lendulet

@@ -66,26 +66,34 @@ Penetration descend(const CoreDifference& difference, Vec3d n, int expansions) {
     return best;
 }
 
-// Depths along the normals of the faces, and for each vertex the least of its faces.
+// Depths along the normals of the faces, and for each vertex the least of its faces, and of their distances.
 struct Landscape {
     double depth[Polytope::max_faces];
-    double least_around[Polytope::max_vertices];
+    double least_around[Polytope::max_vertices], nearest_around[Polytope::max_vertices];
 
     Landscape(const CoreDifference& difference, const Polytope& polytope) {
-        for (double& least : least_around) least = unknown;
+        for (int v = 0; v < Polytope::max_vertices; ++v) least_around[v] = nearest_around[v] = unknown;
         for (int f = 0; f < polytope.face_end(); ++f) {
             if (!polytope.alive(f)) continue;
-            depth[f] = depth_along(difference, polytope.normal(f));
+            const Vec3d n = polytope.normal(f);
+            depth[f] = depth_along(difference, n);
             for (int i = 0; i < 3; ++i) {
-                double& least = least_around[polytope.corners(f)[i]];
-                least = minimum(least, depth[f]);
+                const int v = polytope.corners(f)[i];
+                least_around[v] = minimum(least_around[v], depth[f]);
+                nearest_around[v] = minimum(nearest_around[v], polytope.distance(f, n));
             }
         }
     }
     // No face that shares a corner needs less depth.
     bool is_minimum(const Polytope& polytope, int f) const {
-        const uint8_t* v = polytope.corners(f);
-        return depth[f] <= minimum(least_around[v[0]], minimum(least_around[v[1]], least_around[v[2]]));
+        return depth[f] <= least_at(polytope.corners(f), least_around);
+    }
+    // Nothing beyond this face or one that shares a corner with it, to which the least depth may belong, is less deep.
+    double bound(const Polytope& polytope, int f) const { return least_at(polytope.corners(f), nearest_around); }
+
+private:
+    static double least_at(const uint8_t* v, const double* values) {
+        return minimum(values[v[0]], minimum(values[v[1]], values[v[2]]));
     }
 };
 
@@ -101,8 +109,7 @@ Penetration search_minima(const CoreDifference& difference, const Polytope& poly
         int f = -1;
         for (int g = 0; g < polytope.face_end(); ++g) {
             if (!polytope.alive(g) || tried[g] || !landscape.is_minimum(polytope, g)) continue;
-            // Nothing beyond this face is less deep.
-            if (!(polytope.distance(g, polytope.normal(g)) < known - certified_distance * size)) continue;
+            if (!(landscape.bound(polytope, g) < known - certified_distance * size)) continue;
             if (f < 0 || landscape.depth[g] < landscape.depth[f]) f = g;
         }
         if (f < 0) break;

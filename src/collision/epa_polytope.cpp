@@ -91,6 +91,16 @@ bool Polytope::holds(Vec3d y) const {
     return false;
 }
 
+DifferencePoint Polytope::farthest(Vec3d d) const {
+    int best = 0;
+    double most = dot(y_[0], d);
+    for (int i = 1; i < vertex_count_; ++i) {
+        const double m = dot(y_[i], d);
+        if (m > most) most = m, best = i;
+    }
+    return {y_[best], a_[best], b_[best]};
+}
+
 // Coplanar counts as above, so that no faces without area arise.
 inline bool Polytope::lies_above(Vec3d y, const Face& face) const {
     double h = dot(face.n, y - y_[face.vertex[0]]);

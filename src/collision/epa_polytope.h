@@ -22,6 +22,7 @@ public:
     // Takes p, which lies beyond face f. False where rounding has left no clean outline to join it to.
     bool expand(int f, const DifferencePoint& p);
     bool holds(Vec3d y) const;
+    DifferencePoint farthest(Vec3d d) const;  // of the polytope's corners
 
     int face_end() const { return face_end_; }  // faces are 0 ... face_end() - 1, removed ones infinitely far
     bool alive(int f) const { return key_[f] < far; }

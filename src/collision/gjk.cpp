@@ -3,6 +3,7 @@
 #include "collision/gjk.h"
 
 #include "collision/epa.h"
+#include "collision/gjk_newton.h"
 #include "collision/gjk_search.h"
 #include "collision/trace.h"
 
@@ -10,7 +11,7 @@ namespace lendulet {
 namespace {
 
 // Relative to S .
-constexpr double certified_depth = 5e-6;
+constexpr double certified_depth = 5e-6, certified_tangent = 1e-9;
 constexpr uint8_t all_points[4] = {0, 1, 2, 3};
 
 void start(const CoreDifference& difference, const GjkCache& cache, Simplex& s) {
@@ -62,21 +63,46 @@ Search search_as(SilentObserver&, const CoreDifference& d, Simplex& s, SimplexSo
 Search search_as(Recorder& r, const CoreDifference& d, Simplex& s, SimplexSolver method, double max_distance) {
     return search(d, s, method, max_distance, r);
 }
-Penetration expand_as(SilentObserver&, const CoreDifference& d, const Simplex& s) {
+Penetration expand_as(SilentObserver&, const CoreDifference& d, Simplex& s) {
     return expand_polytope(d, s, d.centre());
 }
-Penetration expand_as(Recorder& r, const CoreDifference& d, const Simplex& s) {
-    return expand_polytope(d, s, d.centre(), r);
+Penetration expand_as(Recorder& r, const CoreDifference& d, Simplex& s) { return expand_polytope(d, s, d.centre(), r); }
+
+// Where a flat or a side of a curved core gave the last normal it mostly gives the next one too: apart, its two points
+// prove themselves; overlapping, a small polytope does.
+bool is_as_before(const CoreDifference& difference, GjkCache& cache, ConvexDistance& result) {
+    Tangency t;
+    if (!difference.curved || cache.count == 0) return false;
+    const Vec3d outward = -to_double(cache.direction);
+    if (!find_tangency_of_features(difference, outward, t)) {
+        if (!is_curved(difference.a) || !is_curved(difference.b)) return false;
+        t = find_smooth_tangency(difference, outward);
+        if (!(t.miss <= certified_tangent * difference.size)) return false;
+    }
+    Simplex s;
+    if (t.height > 0.0) {
+        Penetration deep;
+        if (!expand_around(difference, t, s, deep)) return false;
+        result = result_overlapping(difference, deep, 0);
+        remember(s, result.normal, cache);
+    } else {
+        s.add(t.p);
+        s.weight[0] = 1.0;
+        result = result_apart(difference, s, {Outcome::apart, t.p.y, -t.direction, -t.height, 0.0, 0});
+        cache.direction = result.normal;
+    }
+    return true;
 }
 
 template <class Observer>
 LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCache& cache, SimplexSolver method,
                                                  float max_distance, Observer& observer) {
     const CoreDifference difference(pair);
+    ConvexDistance result;
+    if (is_as_before(difference, cache, result)) return result;
     Simplex s;
     start(difference, cache, s);
     Search found = search_as(observer, difference, s, method, max_distance);
-    ConvexDistance result;
     // Rounding in slivers of simplices can end the search early or take the origin for enclosed. Neither goes
     // unnoticed: the bounds of the distance stay apart, or the depth comes out negative. The polytope then settles the
     // one, and a new search from its separating direction the other.

@@ -9,68 +9,18 @@
 
 namespace lendulet {
 
-// Farthest corner of a hull along d (any length), local frame.
-LENDULET_FORCE_INLINE Vec3 support_corner(const Geometry& g, Vec3d d) {
-    // Out of the range of float products (near contact v can be 1e-30 m long) only the direction is kept.
-    double m = largest_component(d);
-    if (m < 1e-12 || m > 1e12) d = (m > 0.0 ? 1.0 / m : 0.0) * d;
-    Vec3 corner = g.hull->vertices[support_vertex(*g.hull, to_float(d))];
-    return g.size.x == 0.0f ? corner : corner - g.size.x * (corner - g.hull->centroid);
-}
-
 // Farthest point of a core along d (any length), local frame. Curved cores are evaluated in double: in float the noise
 // of their surface would show in the normals of near contacts. Corners are exact floats in any case.
-inline Vec3d support_point(const Geometry& g, Vec3d d) {
-    switch (g.kind) {
-        case GeometryKind::point:
-            return {};
-        case GeometryKind::segment:
-            return {0.0, d.y < 0.0 ? -g.size.y : g.size.y, 0.0};
-        case GeometryKind::box:
-            return {d.x < 0.0 ? -g.size.x : g.size.x, d.y < 0.0 ? -g.size.y : g.size.y,
-                    d.z < 0.0 ? -g.size.z : g.size.z};
-        case GeometryKind::tapered_capsule: {
-            double r = length(d), bottom = g.size.x * r - g.size.y * d.y, top = g.size.z * r + g.size.y * d.y;
-            double end = top >= bottom ? 1.0 : -1.0, s = (top >= bottom ? g.size.z : g.size.x) / r;
-            if (!(r > 0.0)) return {0.0, end * g.size.y, 0.0};
-            return {s * d.x, end * g.size.y + s * d.y, s * d.z};
-        }
-        case GeometryKind::tapered_cylinder: {
-            double r = square_root(d.x * d.x + d.z * d.z);
-            double bottom = g.size.x * r - g.size.y * d.y, top = g.size.z * r + g.size.y * d.y;
-            double end = top >= bottom ? 1.0 : -1.0, s = r > 0.0 ? (top >= bottom ? g.size.z : g.size.x) / r : 0.0;
-            return {s * d.x, end * g.size.y, s * d.z};
-        }
-        case GeometryKind::triangle: {
-            Vec3d p = to_double(g.triangle[0]), q = to_double(g.triangle[1]), r = to_double(g.triangle[2]);
-            double at_p = dot(d, p), at_q = dot(d, q), at_r = dot(d, r);
-            return at_p >= at_q && at_p >= at_r ? p : at_q >= at_r ? q : r;
-        }
-        case GeometryKind::hull:
-            return to_double(support_corner(g, d));
-        default:
-            return {};
-    }
-}
+Vec3d support_point(const Geometry& g, Vec3d d);
 
 inline bool is_curved(const Geometry& g) {
     return g.kind == GeometryKind::tapered_capsule || g.kind == GeometryKind::tapered_cylinder;
 }
 
 // The point of the core's curved surface that p was before it was rounded to float: supports lie on the rim or at the
-// centre of a cap, or on one of the two balls.
-inline Vec3d snap_to_core(const Geometry& g, Vec3d p) {
-    if (!is_curved(g)) return p;
-    Vec3d bottom{p.x, p.y + g.size.y, p.z}, top{p.x, p.y - g.size.y, p.z};
-    bool at_top = absolute(top.y) < absolute(bottom.y);
-    if (g.kind == GeometryKind::tapered_cylinder) bottom.y = top.y = 0.0;
-    double rb = length(bottom), rt = length(top);
-    if (g.kind == GeometryKind::tapered_capsule) at_top = absolute(rt - g.size.z) < absolute(rb - g.size.x);
-    Vec3d q = at_top ? top : bottom;
-    double r = at_top ? rt : rb, radius = at_top ? g.size.z : g.size.x;
-    Vec3d centre{0.0, at_top ? g.size.y : -g.size.y, 0.0};
-    return r > 0.5 * radius ? centre + (radius / r) * q : centre;
-}
+// centre of a cap, or on one of the two balls. Points of flats and sides stay as they are.
+Vec3d snap_to_curved(const Geometry& g, Vec3d p);
+inline Vec3d snap_to_core(const Geometry& g, Vec3d p) { return is_curved(g) ? snap_to_curved(g, p) : p; }
 
 // Largest coordinate of the core's points, for tolerances.
 inline double core_size(const Geometry& g) {
@@ -144,14 +94,7 @@ struct CoreDifference {
           size(core_size(a) + core_size(b) + largest_component(translation)),
           curved(is_curved(a) || is_curved(b)) {}
 
-    DifferencePoint support(Vec3d d) const {
-        if (a.kind == GeometryKind::hull && b.kind == GeometryKind::hull) {
-            const Vec3 pa = support_corner(a, -d), pb = support_corner(b, transpose_multiply(rotation, d));
-            return {translation + rotation * to_double(pb) - to_double(pa), pa, pb};
-        }
-        Vec3d pa = support_point(a, -d), pb = support_point(b, transpose_multiply(rotation, d));
-        return {translation + rotation * pb - pa, to_float(pa), to_float(pb)};
-    }
+    DifferencePoint support(Vec3d d) const;
     // The point that local points remembered from an earlier query make now.
     DifferencePoint point(Vec3 pa, Vec3 pb) const {
         return {translation + rotation * snap_to_core(b, to_double(pb)) - snap_to_core(a, to_double(pa)), pa, pb};

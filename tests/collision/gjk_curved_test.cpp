@@ -182,6 +182,29 @@ TEST(GjkCurved, ValleysAndRimsThatOnceMisledAreCertified) {
         }
 }
 
+// A capsule lies between two edges of a tetrahedron and is nearly as deep in both: where the search begins decides
+// which faces the polytope gets, but not which edge is found.
+TEST(GjkCurved, DepthDoesNotDependOnWhereTheSearchBegins) {
+    Core a = make_hull({{0.541480243f, 0.655487239f, 0.145861834f},
+                        {-0.0411983281f, -0.501353323f, -0.125439584f},
+                        {0.244601533f, 0.247089356f, 0.337952346f},
+                        {0.310024649f, -0.598959565f, 0.251901299f}});
+    Core b = make_tapered(true, 0.26586929f, 0.719809592f, 0.26586929f);
+    const Transform b_in_a{{1.024104f, 0.907225966f, -0.299295545f},
+                           {-0.684520662f, 0.554497659f, 0.466636747f, -0.078829363f}};
+    Random random(37);
+    for (int i = 0; i < cases(2000); ++i) {
+        GjkCache start;
+        start.count = static_cast<uint8_t>(random.integer(5));
+        for (int k = 0; k < start.count; ++k) {
+            start.a[k] = support_core(a.geometry, random.direction());
+            start.b[k] = support_core(b.geometry, random.direction());
+        }
+        ConvexDistance r = distance({&a.geometry, &b.geometry, b_in_a}, start, both_methods[i % 2], 1e30f);
+        ASSERT_NEAR(r.distance, -0.268506f, 1e-6f) << "start " << i;
+    }
+}
+
 // Caps, rims and sides that meet exactly, concentric and coaxial bodies: every direction of a circle is as good.
 TEST(GjkCurved, AlignedBodiesAgreeWithClosedForms) {
     for (SimplexSolver method : both_methods) {

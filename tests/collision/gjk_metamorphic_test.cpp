@@ -189,5 +189,41 @@ TEST(GjkSequence, WarmAndColdAgreeAlongAPath) {
     EXPECT_LE(warm_iterations, 0.5 * frames_apart);
 }
 
+// Cylinders and cones that lie on each other or on a box, a little apart or overlapping: the feature that gave the last
+// normal gives the cold answer, apart without any iteration and overlapping with few expansions.
+TEST(GjkSequence, FeaturesOfCylindersGiveTheColdAnswer) {
+    Random random(29);
+    long apart = 0, iterations = 0, overlapping = 0, expansions = 0;
+    for (int n = 0; n < cases(2000); ++n) {
+        const float half = random.uniform(0.05f, 0.8f), radius = random.uniform(0.2f, 0.6f);
+        Core a =
+            n % 4 == 0 ? make_box({2.0f, 1.0f, 2.0f}) : make_tapered(false, 0.5f, 0.4f, random.uniform(0.0f, 0.5f));
+        Core b = make_tapered(false, radius, half, n % 3 == 0 ? 0.0f : radius);
+        // Caps, sides across each other, or a cap against a side, leaning by up to a few hundredths.
+        const Vec3 x{1.0f, 0.0f, 0.0f}, z{0.0f, 0.0f, 1.0f};
+        const Quat lean = rotation_about(random.direction(), random.uniform(0.0f, 0.03f));
+        Transform t{{0.0f, 3.0f, 0.0f}, lean};
+        if (n % 5 == 1) t = {{0.0f, 0.0f, 3.0f}, lean * rotation_about(z, 0.5f * pi)};
+        if (n % 5 == 2) t = {{0.0f, 0.0f, 3.0f}, lean * rotation_about(x, 0.5f * pi)};
+        t.translation -= query(a, b, t, both_methods[0]).distance * query(a, b, t, both_methods[0]).normal;
+        GjkCache cache;
+        for (int frame = 0; frame < 40; ++frame) {
+            t.translation += 1e-3f * random.direction();
+            t.rotation = normalize(rotation_about(random.direction(), 1e-3f) * t.rotation);
+            ConvexDistance warm = distance({&a.geometry, &b.geometry, t}, cache, both_methods[n % 2], 1e30f);
+            ConvexDistance cold = query(a, b, t, both_methods[n % 2]);
+            ASSERT_NEAR(warm.distance, cold.distance, tolerance(a, b, warm)) << "sequence " << n << " frame " << frame;
+            ASSERT_TRUE(warm.converged) << "sequence " << n << " frame " << frame;
+            ASSERT_NEAR(length(warm.point_b - warm.point_a), absolute(warm.distance), tolerance(a, b, warm));
+            if (frame == 0) continue;
+            ++(warm.distance < 0.0f ? overlapping : apart);
+            if (warm.distance < 0.0f) expansions += warm.expansions;
+            else iterations += warm.iterations;
+        }
+    }
+    EXPECT_LE(iterations, apart);
+    EXPECT_LE(expansions, 3 * overlapping);
+}
+
 }  // namespace
 }  // namespace lendulet::gjk_test
