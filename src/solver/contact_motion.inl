@@ -110,6 +110,11 @@ LENDULET_FORCE_INLINE Arms<Wide<float, W>> place_turned(ContactRow<W, P>& c, con
     return {ra, rb};
 }
 
+// A row does not begin to turn where a body turns by more than this in a substep, in squares of the sine of half the
+// angle: 1/8 rad, one radian in an ordinary step. Which corner meets what is then another question in every substep,
+// and loads that turn so fast would drive the bodies.
+constexpr float fastest_turn = 0.0625f * 0.0625f;
+
 // 1 in the lanes that turn with their bodies: corners above a face that carry something, or will within two substeps if
 // they go on as they have so far; and those that have turned before.
 template <int W, int P>
@@ -117,14 +122,16 @@ LENDULET_FORCE_INLINE Wide<float, W> turning_lanes(const ContactRow<W, P>& c, Wi
                                                    const SubstepConstants& k) {
     using F = Wide<float, W>;
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f), ahead = splat<F>(1.0f + 2.0f / k.substeps_so_far);
-    F near = select(c.turn_limit < zero, one, zero);
+    const F fastest = splat<F>(fastest_turn * k.substeps_so_far * k.substeps_so_far);
+    F near = zero;
     for (int j = 0; j < P; ++j) {
         F moved = c.shift;
         if constexpr (P > 1) moved = moved + (c.p[j].u * c.turn.shift[0] + c.p[j].v * c.turn.shift[1]);
         near = select(c.p[j].impulse > zero, one, near);
         near = select(c.p[j].separation + ahead * moved <= zero, one, near);
     }
-    near = select(turned > c.turn_limit, near, zero);
+    near = select((turned > c.turn_limit) & (turned < fastest), near, zero);
+    near = select(c.turn_limit < zero, one, near);
     return select(c.turn_limit < splat<F>(far_turn), near, zero);
 }
 
