@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "collision/narrow_phase.h"
 #include "geometry/geometry.h"
 #include "lendulet/math.h"
 
@@ -18,10 +19,10 @@ struct FacePoint {
 // Moves at most four points to the front and returns their number: the deepest (or, within half a thousandth of the
 // size of the set, the one farthest along a fixed direction, so that the choice is steady where all are equally deep),
 // the one farthest from it, the one that makes the largest triangle and the one farthest outside that triangle. Points
-// that add less than a thousandth of the size are left out.
-int thin_points(FacePoint* points, int count);
+// that add less than a thousandth of the size are left out. Those that carried a load before are rather chosen again.
+int thin_points(FacePoint* points, int count, const CarriedPoints& carried = {});
 // The same where there are more than four; up to four stay as they are.
-int reduce_points(FacePoint* points, int count);
+int reduce_points(FacePoint* points, int count, const CarriedPoints& carried = {});
 
 // Moves a face to another frame.
 void transform_face(const Transform& t, Face& face);

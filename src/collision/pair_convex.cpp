@@ -89,7 +89,7 @@ int face_manifold(const Contact& c, bool from_b, Manifold& out) {
         uint32_t id = point_id(face_feature(reference.id), face_feature(incident.id));
         clipped.points[clipped.count++] = {dot(tip, clipped.u), dot(tip, clipped.v), tip_height, id};
     }
-    out.count = reduce_points(clipped.points, clipped.count);
+    out.count = reduce_points(clipped.points, clipped.count, c.pair->carried);
     out.normal = to_world(c, from_b ? -clipped.normal : clipped.normal);
     for (int i = 0; i < out.count; ++i) {
         const FacePoint& p = clipped.points[i];

@@ -74,7 +74,7 @@ int collide_plane_convex(const CollidePair& pair, Manifold& out) {
     if (kept == 0) return 0;
     out = {};
     out.normal = normal;
-    out.count = reduce_points(points, kept);
+    out.count = reduce_points(points, kept, pair.carried);
     Vec3 foot = pair.offset - height * normal;
     for (int i = 0; i < out.count; ++i) {
         const FacePoint& p = points[i];

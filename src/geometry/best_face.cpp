@@ -16,10 +16,11 @@ constexpr float side_sine = 0.15f;
 // Cosine of the angle to the axis from which a cap gives its polygon (14 degrees), beyond it the rim touches in a
 // point.
 constexpr float cap_cosine = 0.97f;
-// Sine of the angle to the axis above which the polygon is turned so that one corner is the lowest point of the rim.
-// Below it, the polygon stays fixed to the body so that a resting disc keeps its contacts, and a rim of radius 1 m that
-// rolls over the corners rises and falls by less than 0.01 (1 - cos(pi/16)) = 0.2 mm.
+// Sine of the angle to the axis above which the polygon has the lowest point of the rim as well. Below it, a rim of
+// radius 1 m that rolls over the corners rises and falls by less than 0.01 (1 - cos(pi/16)) = 0.2 mm.
 constexpr float turning_sine = 0.01f;
+// Sine of the angle about the axis within which that point is a corner.
+constexpr float own_point = 0.02f;
 
 constexpr int rim_points = 16;
 // Cosines and sines of k pi / 8.
@@ -86,16 +87,19 @@ Azimuth azimuth_of(Vec3 d) {
     return s > 1e-12f ? Azimuth{d.x / s, d.z / s, s} : Azimuth{1.0f, 0.0f, 0.0f};
 }
 
-// A rim's points are named by where they are in the polygon; corner 0 of a turned one is the moving point.
+// The corners are fixed to the body, so that a disc that rocks keeps its contacts; the lowest point of the rim is one
+// more between two of them, unless it is as good as on one.
 void cap_face(Face& face, float radius, float y, Vec3 d, Azimuth a) {
-    bool top = y > 0.0f;
-    bool turned = a.sine > turning_sine;
-    float x = turned ? a.x : 1.0f, z = turned ? a.z : 0.0f;
+    const bool top = y > 0.0f;
+    const float around = top ? -1.0f : 1.0f;  // counter-clockwise about +y leads from x towards -z
     for (int k = 0; k < rim_points; ++k) {
-        // Counter-clockwise about +y leads from x towards -z.
-        float c = radius * rim_cosine[k], s = radius * (top ? -rim_sine[k] : rim_sine[k]);
-        int id = turned && k == 0 ? moving_point + top : k + (top ? rim_points : 0);
-        add(face, {c * x - s * z, y, c * z + s * x}, static_cast<uint16_t>(id));
+        const float x = rim_cosine[k], z = around * rim_sine[k];
+        add(face, {radius * x, y, radius * z}, static_cast<uint16_t>(k + (top ? rim_points : 0)));
+        if (!(a.sine > turning_sine)) continue;
+        const int next = (k + 1) % rim_points;
+        const float from = around * (x * a.z - z * a.x), to = a.x * rim_sine[next] - around * a.z * rim_cosine[next];
+        if (from > own_point && to > own_point)
+            add(face, {radius * a.x, y, radius * a.z}, static_cast<uint16_t>(moving_point + top));
     }
     face.normal = {0.0f, d.y > 0.0f ? 1.0f : -1.0f, 0.0f};
     face.id = top ? top_cap : bottom_cap;

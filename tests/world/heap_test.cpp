@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "world/support.h"
@@ -9,11 +10,11 @@
 namespace lendulet::test {
 namespace {
 
-// `count` boxes thrown one above the other into a yard that is 2.4 times as wide as they are long; how many still move
-// after `seconds`.
-int awake_after(Vec3 half_extents, int count, int seconds) {
+// `count` bodies, `reach` long from the middle, thrown one above the other into a yard that is 2.4 times as wide as
+// they are long; how many still move after `seconds`.
+int awake_after(const Shape& shape, float reach, int count, int seconds) {
     World world = WorldBuilder{}.gravity({0.0f, -10.0f, 0.0f}).friction(0.6f).build().value();
-    const float inner = 2.4f * half_extents.x, height = 0.5f * static_cast<float>(count);
+    const float inner = 2.4f * reach, height = 0.5f * static_cast<float>(count);
     world.add_static_body({.shape = Plane{}}).value();
     for (float side : {-1.0f, 1.0f}) {
         const float at = side * (inner + 1.0f);
@@ -24,28 +25,37 @@ int awake_after(Vec3 half_extents, int count, int seconds) {
     auto unit = [&] { return static_cast<float>(random() >> 8) * (2.0f / 16777216.0f) - 1.0f; };
     std::vector<BodyId> bodies;
     for (int i = 0; i < count; ++i) {
-        const Position at{half_extents.x * unit(), 1.0f + 0.4f * static_cast<float>(i), half_extents.x * unit()};
+        const Position at{reach * unit(), 1.0f + 0.4f * static_cast<float>(i), reach * unit()};
         const Quat turn = normalize(Quat{unit(), unit(), unit(), unit() + 1.5f});
-        bodies.push_back(world
-                             .add_rigid_body({.shape = Box{half_extents},
-                                              .position = at,
-                                              .orientation = turn,
-                                              .density = 100.0f,
-                                              .friction = 0.6f})
-                             .value());
+        bodies.push_back(
+            world
+                .add_rigid_body(
+                    {.shape = shape, .position = at, .orientation = turn, .density = 100.0f, .friction = 0.6f})
+                .value());
     }
     run(world, 60 * seconds);
     return static_cast<int>(
         std::count_if(bodies.begin(), bodies.end(), [&](BodyId id) { return !world.get(id).asleep(); }));
 }
 
-TEST(Heap, PlanksComeToRest) { EXPECT_EQ(awake_after({1.0f, 0.05f, 0.3f}, 60, 20), 0); }
+TEST(Heap, PlanksComeToRest) { EXPECT_EQ(awake_after(Box{{1.0f, 0.05f, 0.3f}}, 1.0f, 60, 20), 0); }
 
-TEST(Heap, PlatesComeToRest) { EXPECT_EQ(awake_after({0.5f, 0.03f, 0.5f}, 60, 20), 0); }
+TEST(Heap, PlatesComeToRest) { EXPECT_EQ(awake_after(Box{{0.5f, 0.03f, 0.5f}}, 0.5f, 60, 20), 0); }
 
-TEST(Heap, SticksComeToRest) { EXPECT_EQ(awake_after({1.0f, 0.06f, 0.06f}, 60, 20), 0); }
+TEST(Heap, SticksComeToRest) { EXPECT_EQ(awake_after(Box{{1.0f, 0.06f, 0.06f}}, 1.0f, 60, 20), 0); }
 
-TEST(Heap, SmallTilesComeToRest) { EXPECT_EQ(awake_after({0.1f, 0.01f, 0.05f}, 40, 20), 0); }
+TEST(Heap, SmallTilesComeToRest) { EXPECT_EQ(awake_after(Box{{0.1f, 0.01f, 0.05f}}, 0.1f, 40, 20), 0); }
+
+TEST(Heap, CoinsComeToRest) { EXPECT_EQ(awake_after(Cylinder{0.06f, 0.5f}, 0.5f, 60, 20), 0); }
+
+TEST(Heap, HullsOfManyCornersComeToRest) {
+    std::vector<Vec3> points;
+    for (int k = 0; k < 16; ++k) {
+        const float angle = 0.125f * pi * static_cast<float>(k);
+        for (float y : {-0.06f, 0.06f}) points.push_back({0.5f * std::cos(angle), y, 0.5f * std::sin(angle)});
+    }
+    EXPECT_EQ(awake_after(ConvexHull::from_points(points).value(), 0.5f, 60, 20), 0);
+}
 
 }  // namespace
 }  // namespace lendulet::test

@@ -190,7 +190,13 @@ private:
     void collide_single(ColliderPair& p, uint32_t index, float margin) {
         PairCache& cache = world_.pairs.caches[index];
         Manifold manifold;
-        int count = collide(collide_input(world_, p, margin), cache, settings(), &manifold, 1);
+        CollidePair pair = collide_input(world_, p, margin);
+        if (p.count > 0) {
+            const ContactRecord& r = world_.records[p.first_record];
+            for (int j = 0; j < r.point_count; ++j)
+                if (r.normal_impulse[j] > 0.0f) pair.carried.ids[pair.carried.count++] = r.id[j];
+        }
+        int count = collide(pair, cache, settings(), &manifold, 1);
         if (count > 0) write_single(p, index, manifold);
         finish(p, index, count, margin, cache.clearance);
     }
