@@ -29,7 +29,9 @@ bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& setting
 inline bool is_convex(const Geometry& g) { return g.kind != GeometryKind::plane && !has_triangles(g); }
 
 // The same pair seen from B.
-inline CollidePair swapped(const CollidePair& p) { return {p.b, p.a, p.rotation_b, p.rotation_a, -p.offset, p.margin, p.carried}; }
+inline CollidePair swapped(const CollidePair& p) {
+    return {p.b, p.a, p.rotation_b, p.rotation_a, -p.offset, p.margin, p.carried};
+}
 // Turns a manifold of swapped(pair) into one of `pair`.
 inline void swap_back(const CollidePair& pair, Manifold& m) {
     m.normal = -m.normal;
