@@ -72,6 +72,22 @@ TEST(BestFaceTest, CylinderCapSideAndRim) {
             EXPECT_NEAR(reach, dot(support_core(g, d), d), tilt > 0.01f ? 1e-6f : 2e-4f);
         }
     }
+    // A cap that rocks keeps its corners; the lowest point of its rim is one more, between the two beside it.
+    const Face still = best_face(g, {0, 1, 0});
+    for (float azimuth : {0.1f, 1.0f, 2.5f, 4.0f, 6.0f}) {
+        const Vec3 low{std::cos(azimuth), 0.0f, std::sin(azimuth)};
+        const Vec3 d = normalize(Vec3{0.1f * low.x, 1.0f, 0.1f * low.z});
+        const Face rocked = best_face(g, d);
+        expect_polygon(g, rocked, d);
+        ASSERT_EQ(rocked.count, 17);
+        int kept = 0;
+        for (int i = 0, k = 0; i < rocked.count; ++i) {
+            if (k < still.count && rocked.ids[i] == still.ids[k] && rocked.vertices[i] == still.vertices[k])
+                ++k, ++kept;
+            else EXPECT_LT(length(rocked.vertices[i] - (2.0f * low + Vec3{0, 0.5f, 0})), 1e-5f);
+        }
+        EXPECT_EQ(kept, 16);
+    }
     // At rest the points do not wander with the noise of the normal.
     Face a = best_face(g, {1e-6f, -1, 2e-6f}), b = best_face(g, {-3e-6f, -1, 1e-6f});
     for (int i = 0; i < a.count; ++i) {
