@@ -77,7 +77,7 @@ float settled_by(const WorldData& world, size_t first, size_t end, float sinking
         }
         if (f.lower != no_slot) {
             inverse_masses += world.bodies.mass[f.lower].inverse_mass;
-            below = world.island_loads[f.lower].carried;
+            below = world.island_loads[f.lower].settled;
         }
         const float overlap = minimum(sinking * impulse * inverse_masses, gap_limit(world, f.upper));
         sum += below + maximum(overlap + gap, 0.0f);
@@ -99,10 +99,9 @@ void settle_first_loads(WorldData& world, float dt) {
     const Array<FirstLoad>& list = world.first_loads;
     const float h = dt / static_cast<float>(world.config.solver_steps);
     const Vec3 down = normalize(world.config.gravity);
-    // What a body carries has been handed on: from here on `carried` is how far it is put down, m.
     for (const FirstLoad& f : list) {
-        world.island_loads[f.upper].carried = 0.0f;
-        if (f.lower != no_slot) world.island_loads[f.lower].carried = 0.0f;
+        world.island_loads[f.upper].settled = 0.0f;
+        if (f.lower != no_slot) world.island_loads[f.lower].settled = 0.0f;
     }
     for (size_t end = list.size(); end > 0;) {
         const uint32_t upper = list[end - 1].upper;
@@ -111,7 +110,7 @@ void settle_first_loads(WorldData& world, float dt) {
         // Impulses are those of the setting's substep, and gaps go with the square of the island's.
         const auto shorter = static_cast<float>(1 << 2 * substep_class(world, upper));
         const float settled = settled_by(world, first, end, contact_leak / contact_bias * h / shorter);
-        world.island_loads[upper].carried = settled;
+        world.island_loads[upper].settled = settled;
         Position& x = world.bodies.pose[upper].position;
         Vec3& low = world.bodies.momenta[upper].x_low;
         const Vec3 way = settled * down - low;
@@ -121,8 +120,8 @@ void settle_first_loads(WorldData& world, float dt) {
         end = first;
     }
     for (const FirstLoad& f : list)
-        follow_settling(world.records[f.record], down, world.island_loads[f.upper].carried,
-                        f.lower == no_slot ? 0.0f : world.island_loads[f.lower].carried);
+        follow_settling(world.records[f.record], down, world.island_loads[f.upper].settled,
+                        f.lower == no_slot ? 0.0f : world.island_loads[f.lower].settled);
 }
 
 }  // namespace lendulet

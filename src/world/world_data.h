@@ -63,6 +63,7 @@ struct alignas(64) IslandLoad {
     bool touches = false;  // is in contact
     uint8_t calm = 0;      // steps for which it has been slow, at most calm_steps; `slow`: for so many
     float carried = 0.0f;  // its mass and that of what new contacts put on it, kg
+    float settled = 0.0f;  // how far it is put down for that, m
     float inverse_mass = 0.0f, radius = 0.0f;
 };
 
