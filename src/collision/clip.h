@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "collision/narrow_phase.h"
+#include "collision/manifold.h"
 #include "geometry/geometry.h"
 #include "lendulet/math.h"
 

@@ -13,6 +13,17 @@ struct ManifoldPoint {
     uint32_t id;       // names the two features that meet; equal ids from step to step are the same point
 };
 
+// Names of the points that carried a load. Of many points these are rather chosen again.
+struct CarriedPoints {
+    uint32_t ids[4];
+    int count = 0;
+    bool has(uint32_t id) const {
+        bool found = false;
+        for (int i = 0; i < count; ++i) found = found || ids[i] == id;
+        return found;
+    }
+};
+
 struct Manifold {
     Vec3 normal;  // unit, world axes, from A to B
     int count = 0;

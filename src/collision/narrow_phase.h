@@ -15,17 +15,6 @@ struct MeshFilterBatch;
 // See mesh/filter.h; four triangles at a time.
 void filter_triangles(MeshFilterBatch& batch);
 
-// Names of the points that carried a load. Of many points these are rather chosen again.
-struct CarriedPoints {
-    uint32_t ids[4];
-    int count = 0;
-    bool has(uint32_t id) const {
-        bool found = false;
-        for (int i = 0; i < count; ++i) found = found || ids[i] == id;
-        return found;
-    }
-};
-
 struct CollidePair {
     const Geometry* a;
     const Geometry* b;

@@ -146,8 +146,11 @@ export const toolChecks = {
         await page.evaluate((deeds) => (location.hash = `#scene=stack:9&deeds=${deeds}`),
             text([[3, { do: "sphere", radius: -1, at: [0, 5, 0], velocity: [0, 0, 0], density: 1 }]]));
         await until(page, () => window.lendulet.player.sceneName === "stack:9");
+        // It goes by itself, which a slow machine may miss.
+        await page.evaluate(() => new MutationObserver(() => (window.wasSaid = true))
+            .observe(document.getElementById("message"), { childList: true, characterData: true, subtree: true }));
         await page.click("#play");
-        await until(page, () => !document.getElementById("message").hidden);
+        await until(page, () => window.wasSaid === true);
         await page.click("#play");
         await until(page, () => window.lendulet.player.world.stepCount > 10);
     },
