@@ -71,8 +71,8 @@ export class App {
         if (link.paused) this.player.playing = false;
         if (given && !link.scene) this.openWith(given.name, given.make, link);
         else if (!this.open(link.scene ?? firstScene, link)) this.open(firstScene);
-        window.addEventListener("hashchange", () => {
-            const wanted = readLink();
+        window.addEventListener("hashchange", ({ newURL }) => {
+            const wanted = readLink(new URL(newURL).hash); // the page may have written its own over it since
             const other = wanted.scene !== this.player.sceneName || (wanted.compare ?? false) !== this.comparison.on;
             if (wanted.scene && other) this.open(wanted.scene, wanted);
         });

@@ -14,8 +14,8 @@ export interface Link {
     deeds?: Deed[];  // what was done, where it is short enough
 }
 
-export function readLink(): Link {
-    const values = new URLSearchParams(location.hash.slice(1));
+export function readLink(hash = location.hash): Link {
+    const values = new URLSearchParams(hash.slice(1));
     const view = values.get("view")?.split(",").map(Number);
     return {
         scene: values.get("scene") ?? undefined,
