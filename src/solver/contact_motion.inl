@@ -137,8 +137,9 @@ LENDULET_FORCE_INLINE Arms<Wide<float, W>> place_balls(ContactRow<W, 1>& c, cons
     const F distance = square_root(dot(way, way));
     auto known = distance > splat<F>(0.01f) * radii;
     c.n = select(known, (one / maximum(distance, splat<F>(1e-30f))) * way, c.n);
-    const Vec3T<F> t = cross(c.n, select(absolute(c.n.x) > splat<F>(0.5f), Vec3T<F>{splat<F>(0.0f), one, splat<F>(0.0f)},
-                                         Vec3T<F>{one, splat<F>(0.0f), splat<F>(0.0f)}));
+    const Vec3T<F> t =
+        cross(c.n, select(absolute(c.n.x) > splat<F>(0.5f), Vec3T<F>{splat<F>(0.0f), one, splat<F>(0.0f)},
+                          Vec3T<F>{one, splat<F>(0.0f), splat<F>(0.0f)}));
     c.t1 = (one / square_root(dot(t, t))) * t;
     c.shift = splat<F>(0.0f);
     c.p[0].separation = distance - radii;
@@ -232,7 +233,8 @@ template <int W, int P>
     F balls = zero;
     if constexpr (P == 1) balls = following_lanes<W, P>(c, near, now.swung);
     const F turns = maximum(corners, balls);
-    const F renews = select(maximum(now.turned - maximum(c.turn_limit, splat<F>(far_turn)), now.swung) > zero, one, turns);
+    const F renews =
+        select(maximum(now.turned - maximum(c.turn_limit, splat<F>(far_turn)), now.swung) > zero, one, turns);
     auto turned = turns > zero, far = renews > zero;
     if (!mask_bits(far)) return now;
     RecordQuads<W> record{floats_of(g.records), {}};

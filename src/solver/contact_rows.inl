@@ -71,7 +71,7 @@ struct alignas(64) ContactRow {
     // Read by relax alone.
     Vec3T<F> ra, rb;  // arms of the centre at the start of the step
     F radius_a, radius_b;
-    F turn_limit;         // how far a body may turn before turn_row() is called, see MovedArms; negative when the row turns
+    F turn_limit;  // how far a body may turn before turn_row() is called, see MovedArms; negative when the row turns
     Vec3T<F> start_slip;  // relative velocity of the centre at the start of the step
     Vec3T<F> start_turn;  // angular velocity then of the bodies whose arms move, weighted by how much they do
     F static_friction, dynamic_friction;

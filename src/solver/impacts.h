@@ -15,9 +15,9 @@ struct alignas(64) BouncingContact {
 
     uint32_t record;
     int32_t a = 0, b = 0;
-    float gap = 0.0f;        // least separation of its points at the start of the step, m
-    float normal[3] = {};    // or the way between the centres of two balls, m
-    float radii = 0.0f;      // of two balls, m; 0: others
+    float gap = 0.0f;                      // least separation of its points at the start of the step, m
+    float normal[3] = {};                  // or the way between the centres of two balls, m
+    float radii = 0.0f;                    // of two balls, m; 0: others
     float reach_a = 0.0f, reach_b = 0.0f;  // how far the points are from the axes about which they turn, m
     float pull = 0.0f;                     // the bodies' accelerations, m/s^2
     float pull_a = 0.0f, pull_b = 0.0f;    // and by how much turning accelerates them: times the square of w, m

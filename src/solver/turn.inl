@@ -35,12 +35,74 @@ LENDULET_FORCE_INLINE QuatT<F> normalized(QuatT<F> q) {
     return {s * q.x, s * q.y, s * q.z, s * q.w};
 }
 
+// Principal moments that differ by no more, relative to the largest, count as equal: rounding of mass properties.
+inline constexpr float equal_moments = 1e-6f;
+inline constexpr int most_halvings = 7;  // of a turn, until the series holds: 128 radians in a substep
+
 // The turn, or what is left of it at a radian, where the series ends: what spins faster than its parts can follow turns
 // by too little, and not by numbers without bounds.
 template <class F>
 LENDULET_FORCE_INLINE Vec3T<F> at_most_a_radian(Vec3T<F> turn) {
     const F size2 = dot(turn, turn), one = splat<F>(1.0f);
     return select(size2 > one, one / square_root(size2), one) * turn;
+}
+
+// exp of half the rotation vector `turn` of any length, less 1: that of a part, squared.
+template <class F>
+LENDULET_FORCE_INLINE QuatT<F> long_turn_less_one(Vec3T<F> turn) {
+    const F one = splat<F>(1.0f), size2 = dot(turn, turn);
+    F parts = one;
+    for (int i = 0; i < most_halvings; ++i) parts = select(size2 > parts * parts, parts + parts, parts);
+    QuatT<F> q = turn_quaternion((one / parts) * turn);
+    for (F done = one; mask_bits(done < parts); done = done + done) {
+        auto more = done < parts;
+        const QuatT<F> twice = multiply(q, q);
+        q = {select(more, twice.x, q.x), select(more, twice.y, q.y), select(more, twice.z, q.z),
+             select(more, twice.w, q.w)};
+    }
+    const QuatT<F> whole = turn_less_one(turn);
+    auto cut = parts > one;
+    return {select(cut, q.x, whole.x), select(cut, q.y, whole.y), select(cut, q.z, whole.z),
+            select(cut, q.w - one, whole.w)};
+}
+
+// The axis about which a body has two equal principal moments, or nearly: the inverses of these and of the third one.
+template <class F>
+struct Symmetry {
+    F found;        // 1, or 0 where all three differ
+    Vec3T<F> axis;  // of the principal frame
+    F across, along;
+    LENDULET_FORCE_INLINE explicit Symmetry(Vec3T<F> inverse) {
+        const F zero = splat<F>(0.0f), one = splat<F>(1.0f), half = splat<F>(0.5f);
+        const F near = splat<F>(equal_moments) * maximum(maximum(inverse.x, inverse.y), inverse.z);
+        auto about_x = absolute(inverse.y - inverse.z) <= near;
+        auto about_y = absolute(inverse.x - inverse.z) <= near;
+        auto about_z = absolute(inverse.x - inverse.y) <= near;
+        const F x = select(about_x, one, zero), y = select(about_y, one - x, zero);
+        axis = {x, y, one - x - y};
+        found = maximum(x + y, select(about_z, one, zero));
+        along = select(x > zero, inverse.x, select(y > zero, inverse.y, inverse.z));
+        across = half * select(x > zero, inverse.y + inverse.z,
+                               select(y > zero, inverse.x + inverse.z, inverse.x + inverse.y));
+    }
+};
+
+// The turn of a body with such an axis, exact for any time: it turns about its axis, which goes round L. The angle
+// between the two stays, and with it the energy, whatever rounding does to either turn. (Landau, Lifshitz, "Mechanics",
+// section 33)
+template <class F>
+LENDULET_FORCE_INLINE QuatT<F> turn_symmetric(QuatT<F> q, QuatT<F> q0, Vec3T<F> L, const Symmetry<F>& body, float h,
+                                              bool some_long) {
+    const F time = splat<F>(h);
+    const Vec3T<F> axis = rotate(q0, body.axis);  // at the start of the step
+    const F spin = (time * (body.along - body.across)) * dot(L, rotate(q, axis));
+    const Vec3T<F> about_axis = spin * axis, about_L = (time * body.across) * L;
+    const QuatT<F> a = some_long ? long_turn_less_one(about_axis) : turn_less_one(about_axis);
+    const QuatT<F> b = some_long ? long_turn_less_one(about_L) : turn_less_one(about_L);
+    QuatT<F> d = multiply(q, a);
+    q = {q.x + d.x, q.y + d.y, q.z + d.z, q.w + d.w};
+    d = multiply(b, q);
+    return {q.x + d.x, q.y + d.y, q.z + d.z, q.w + d.w};
 }
 
 inline constexpr int max_turn_parts = 128;
@@ -69,12 +131,25 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
     F wish = splat<F>(2.0f * h) * square_root(dot(w, w)) * anisotropy;
     F iterations = select(wish > splat<F>(0.01f), select(wish > splat<F>(0.05f), four, splat<F>(2.0f)), one);
     iterations = select(anisotropy <= one, zero, iterations);  // about a fixed axis L gives the velocity at once
+    F symmetric = zero;
+    QuatT<F> turned{};
+    if (mask_bits(iterations > zero)) {
+        const Symmetry<F> body(inverse);
+        symmetric = select(anisotropy > one, select(given, zero, body.found), zero);
+        iterations = select(symmetric > zero, zero, iterations);
+        if (mask_bits(symmetric > zero)) {
+            const F size2 = dot(L, L) * (body.along * body.along + body.across * body.across);
+            turned = turn_symmetric(dq, q0, L, body, h, mask_bits(splat<F>(h * h) * size2 > one) != 0);
+        }
+    }
+    wish = select(symmetric > zero, zero, wish);
     F parts = one;
     const bool some_quick = mask_bits(wish > splat<F>(quick)) != 0;
     if (some_quick) {
         // |L| and the least moment do not change while it tumbles, |w| does.
         F most = maximum(maximum(inverse.x, inverse.y), inverse.z);
         F steady = select(given, wish, splat<F>(2.0f * h) * square_root(dot(L, L)) * most);
+        steady = select(symmetric > zero, zero, steady);
         iterations = select(steady > splat<F>(quick), select(anisotropy > one, splat<F>(6.0f), zero), iterations);
         for (int i = 1; i < max_turn_parts; i *= 2)
             parts = select(steady > splat<F>(most_wish) * parts, parts + parts, parts);
@@ -106,5 +181,8 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
         add_compensated(q.z, low.z, d.z, active);
         add_compensated(q.w, low.w, d.w, active);
     }
+    auto exact = symmetric > zero;
+    q = {select(exact, turned.x, q.x), select(exact, turned.y, q.y), select(exact, turned.z, q.z),
+         select(exact, turned.w, q.w)};
     return normalized(q);
 }
