@@ -12,14 +12,13 @@ namespace {
 
 // Relative to S .
 constexpr double certified_depth = 5e-6, certified_tangent = 1e-9;
+constexpr double beyond_doubt = 0.05;
 constexpr uint8_t all_points[4] = {0, 1, 2, 3};
 
-void start(const CoreDifference& difference, const GjkCache& cache, Simplex& s) {
-    for (int i = 0; i < cache.count && i < 4; ++i) s.add(difference.point(cache.a[i], cache.b[i]));
-    if (s.count > 0) return;
-    Vec3d centre = difference.centre();
-    if (!(largest_component(centre) > 0.0)) centre = {0.0, 1.0, 0.0};
-    s.add(difference.support(-centre));
+// Where a search begins that remembers nothing: from the middle of the difference towards the origin.
+Vec3d first_direction(const CoreDifference& difference) {
+    const Vec3d centre = difference.centre();
+    return largest_component(centre) > 0.0 ? -centre : Vec3d{0.0, -1.0, 0.0};
 }
 
 void remember(const Simplex& s, Vec3 direction, GjkCache& cache) {
@@ -94,6 +93,20 @@ bool is_as_before(const CoreDifference& difference, GjkCache& cache, ConvexDista
     return true;
 }
 
+// From the points remembered or, in a cold query, from one. True where the result is there already: where that one lies
+// so far beyond the origin that the cores will overlap, the polytope begins without a search.
+template <class Observer>
+bool start(const CoreDifference& difference, const GjkCache& cache, Simplex& s, Penetration& deep, Observer& observer) {
+    for (int i = 0; i < cache.count && i < 4; ++i) s.add(difference.point(cache.a[i], cache.b[i]));
+    if (s.count > 0) return false;
+    const Vec3d d = first_direction(difference);
+    s.add(difference.support(d));
+    if (difference.a.kind != GeometryKind::hull || difference.b.kind != GeometryKind::hull) return false;
+    const double height = dot(d, s.y[0]), dd = dot(d, d), far = beyond_doubt * difference.size;
+    if (!(height > 0.0 && height * height > far * far * dd)) return false;
+    return expand_below(difference, s.point(0), (1.0 / square_root(dd)) * d, s, deep, observer);
+}
+
 template <class Observer>
 LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCache& cache, SimplexSolver method,
                                                  float max_distance, Observer& observer) {
@@ -101,14 +114,16 @@ LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCach
     ConvexDistance result;
     if (is_as_before(difference, cache, result)) return result;
     Simplex s;
-    start(difference, cache, s);
-    Search found = search_as(observer, difference, s, method, max_distance);
+    Penetration deep;
+    Search found{Outcome::overlap, {}, {}, 0.0, 0.0, 0};
+    const bool is_deep = start(difference, cache, s, deep, observer);
+    if (!is_deep) found = search_as(observer, difference, s, method, max_distance);
     // Rounding in slivers of simplices can end the search early or take the origin for enclosed. Neither goes
     // unnoticed: the bounds of the distance stay apart, or the depth comes out negative. The polytope then settles the
     // one, and a new search from its separating direction the other.
     bool doubtful = found.outcome == Outcome::apart && !(found.gap <= certified_distance * difference.size);
     if (found.outcome == Outcome::overlap || doubtful) {
-        Penetration deep = expand_as(observer, difference, s);
+        if (!is_deep) deep = expand_as(observer, difference, s);
         result = result_overlapping(difference, deep, found.iterations);
         if (deep.depth < -certified_distance * difference.size) {
             s.count = 0;
