@@ -264,9 +264,8 @@ bool expand_around(const CoreDifference& difference, const Tangency& known, Simp
     return true;
 }
 
-template <class Observer>
 bool expand_below(const CoreDifference& difference, const DifferencePoint& top, Vec3d direction, Simplex& simplex,
-                  Penetration& out, Observer& observer) {
+                  Penetration& out) {
     constexpr double lean = 0.55;  // rad
     Simplex s;
     add_ring(difference, direction, lean, s);
@@ -275,15 +274,13 @@ bool expand_below(const CoreDifference& difference, const DifferencePoint& top, 
     polytope.start(s, merge * difference.size);
     take_beyond(polytope, top, surface * difference.size);
     SmoothMinimum smooth{{}, false, -1.0};
+    SilentObserver silent;
     simplex = s;
-    out = expand(difference, polytope, smooth, simplex, observer);
+    out = expand(difference, polytope, smooth, simplex, silent);
     return true;
 }
 
 template Penetration expand_polytope(const CoreDifference&, Simplex&, Vec3d, Recorder&);
-template bool expand_below(const CoreDifference&, const DifferencePoint&, Vec3d, Simplex&, Penetration&, Recorder&);
-template bool expand_below(const CoreDifference&, const DifferencePoint&, Vec3d, Simplex&, Penetration&,
-                           SilentObserver&);
 
 Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, Vec3d hint) {
     SilentObserver silent;

@@ -32,9 +32,8 @@ Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, 
 // along the unit `direction`. The polytope begins with it, points around it and the one opposite, whether or not these
 // hold the origin; the depth comes out negative where nothing does. Not for curved differences. False where the points
 // span no volume.
-template <class Observer>
 bool expand_below(const CoreDifference& difference, const DifferencePoint& top, Vec3d direction, Simplex& simplex,
-                  Penetration& out, Observer& observer);
+                  Penetration& out);
 
 // Where the nearest point is known but for the proof: the polytope begins with it and points around and opposite to it,
 // which are left in `simplex`. False where these do not enclose the origin.

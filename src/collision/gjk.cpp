@@ -2,6 +2,7 @@
 // write witness points and the simplex to remember.
 #include "collision/gjk.h"
 
+#include "collision/box_depth.h"
 #include "collision/epa.h"
 #include "collision/gjk_newton.h"
 #include "collision/gjk_search.h"
@@ -55,6 +56,23 @@ ConvexDistance result_overlapping(const CoreDifference& difference, const Penetr
     return result;
 }
 
+bool are_both(const CoreDifference& difference, GeometryKind kind) {
+    return difference.a.kind == kind && difference.b.kind == kind;
+}
+
+// Where the first point of a cold query, or the points of a warm one, tell that boxes or hulls will overlap, their
+// depth needs no search. Where it is not found after all, the search begins with the same points.
+bool is_deep_at_once(const CoreDifference& difference, Simplex& s, Penetration& deep) {
+    const bool boxes = are_both(difference, GeometryKind::box);
+    if (boxes && s.count == 4) return depth_of_boxes(difference, s, deep);
+    if (s.count != 1 || !(boxes || are_both(difference, GeometryKind::hull))) return false;
+    const Vec3d d = first_direction(difference);
+    const double height = dot(d, s.y[0]), dd = dot(d, d), far = beyond_doubt * difference.size;
+    if (!(height > 0.0 && height * height > far * far * dd)) return false;
+    if (boxes) return depth_of_boxes(difference, s, deep);
+    return expand_below(difference, s.point(0), (1.0 / square_root(dd)) * d, s, deep);
+}
+
 // The observer's calls go to the untemplated functions where it is silent.
 Search search_as(SilentObserver&, const CoreDifference& d, Simplex& s, SimplexSolver method, double max_distance) {
     return search(d, s, method, max_distance);
@@ -63,9 +81,16 @@ Search search_as(Recorder& r, const CoreDifference& d, Simplex& s, SimplexSolver
     return search(d, s, method, max_distance, r);
 }
 Penetration expand_as(SilentObserver&, const CoreDifference& d, Simplex& s) {
-    return expand_polytope(d, s, d.centre());
+    Penetration deep;
+    return are_both(d, GeometryKind::box) && depth_of_boxes(d, s, deep) ? deep : expand_polytope(d, s, d.centre());
 }
 Penetration expand_as(Recorder& r, const CoreDifference& d, Simplex& s) { return expand_polytope(d, s, d.centre(), r); }
+
+// Steps that are to be seen are taken one by one.
+bool shortcut_as(SilentObserver&, const CoreDifference& d, Simplex& s, Penetration& deep) {
+    return is_deep_at_once(d, s, deep);
+}
+bool shortcut_as(Recorder&, const CoreDifference&, Simplex&, Penetration&) { return false; }
 
 // Where a flat or a side of a curved core gave the last normal it mostly gives the next one too: apart, its two points
 // prove themselves; overlapping, a small polytope does.
@@ -93,18 +118,10 @@ bool is_as_before(const CoreDifference& difference, GjkCache& cache, ConvexDista
     return true;
 }
 
-// From the points remembered or, in a cold query, from one. True where the result is there already: where that one lies
-// so far beyond the origin that the cores will overlap, the polytope begins without a search.
-template <class Observer>
-bool start(const CoreDifference& difference, const GjkCache& cache, Simplex& s, Penetration& deep, Observer& observer) {
+// From the points remembered or, in a cold query, from one.
+void start(const CoreDifference& difference, const GjkCache& cache, Simplex& s) {
     for (int i = 0; i < cache.count && i < 4; ++i) s.add(difference.point(cache.a[i], cache.b[i]));
-    if (s.count > 0) return false;
-    const Vec3d d = first_direction(difference);
-    s.add(difference.support(d));
-    if (difference.a.kind != GeometryKind::hull || difference.b.kind != GeometryKind::hull) return false;
-    const double height = dot(d, s.y[0]), dd = dot(d, d), far = beyond_doubt * difference.size;
-    if (!(height > 0.0 && height * height > far * far * dd)) return false;
-    return expand_below(difference, s.point(0), (1.0 / square_root(dd)) * d, s, deep, observer);
+    if (s.count == 0) s.add(difference.support(first_direction(difference)));
 }
 
 template <class Observer>
@@ -116,7 +133,8 @@ LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCach
     Simplex s;
     Penetration deep;
     Search found{Outcome::overlap, {}, {}, 0.0, 0.0, 0};
-    const bool is_deep = start(difference, cache, s, deep, observer);
+    start(difference, cache, s);
+    const bool is_deep = shortcut_as(observer, difference, s, deep);
     if (!is_deep) found = search_as(observer, difference, s, method, max_distance);
     // Rounding in slivers of simplices can end the search early or take the origin for enclosed. Neither goes
     // unnoticed: the bounds of the distance stay apart, or the depth comes out negative. The polytope then settles the
