@@ -65,8 +65,7 @@ private:
 // m), and those of hulls take the normal of a face that looks within 3.5 degrees along the shortest way out.
 constexpr double preference = 1e-2;
 
-template <class M>
-double deepest(const M& m) {
+double deepest(const Manifold& m) {
     float d = m.points[0].separation;
     for (int i = 1; i < m.count; ++i) d = minimum(d, m.points[i].separation);
     return d;
@@ -135,12 +134,16 @@ public:
     }
 
 private:
-    // As a step does: where the features that face each other do not overlap, the distance query decides.
     double answer(int first, int k) const {
-        const auto i = static_cast<size_t>(first + k);
-        const bool is_pile = data_.set->is_pile();
-        if (lists_->clearance[k] > contact_margin) return is_pile ? contact_margin : failed;
-        if (lists_->out[k].count > 0) return deepest(lists_->out[k]);
+        const lendulet::BatchManifold& m = lists_->out[k];
+        const bool is_pile = data_.set->is_pile(), apart = lists_->clearance[k] > contact_margin;
+        if (!apart && m.count == 0) return answer_single(static_cast<size_t>(first + k), is_pile);
+        float least = m.points[0].separation;  // those that are absent are far above
+        for (int i = 1; i < 4; ++i) least = minimum(least, m.points[i].separation);
+        return !apart ? least : is_pile ? contact_margin : failed;
+    }
+    // As a step does: where the features that face each other do not overlap, the distance query decides.
+    double answer_single(size_t i, bool is_pile) const {
         PairCache cache;
         const Transform& t = data_.pose[i];
         return collide_one({&data_.a[i], &data_.b[i], {}, t.rotation, t.translation, contact_margin}, cache, is_pile);

@@ -60,16 +60,15 @@ bool are_both(const CoreDifference& difference, GeometryKind kind) {
     return difference.a.kind == kind && difference.b.kind == kind;
 }
 
-// Where the first point of a cold query, or the points of a warm one, tell that boxes or hulls will overlap, their
-// depth needs no search. Where it is not found after all, the search begins with the same points.
-bool is_deep_at_once(const CoreDifference& difference, Simplex& s, Penetration& deep) {
-    const bool boxes = are_both(difference, GeometryKind::box);
-    if (boxes && s.count == 4) return depth_of_boxes(difference, s, deep);
-    if (s.count != 1 || !(boxes || are_both(difference, GeometryKind::hull))) return false;
-    const Vec3d d = first_direction(difference);
+// Where the first point of a cold query, found along d, or the four points of a warm one (d is zero) tell that boxes or
+// hulls will overlap, their depth needs no search. Where it is not found after all, the search begins with the same
+// points.
+LENDULET_FORCE_INLINE bool is_deep_at_once(const CoreDifference& difference, Vec3d d, Simplex& s, Penetration& deep) {
     const double height = dot(d, s.y[0]), dd = dot(d, d), far = beyond_doubt * difference.size;
-    if (!(height > 0.0 && height * height > far * far * dd)) return false;
-    if (boxes) return depth_of_boxes(difference, s, deep);
+    const bool beyond = height > 0.0 && height * height > far * far * dd;
+    if (!beyond && s.count < 4) return false;
+    if (are_both(difference, GeometryKind::box)) return depth_of_boxes(difference, s, deep);
+    if (!beyond || !are_both(difference, GeometryKind::hull)) return false;
     return expand_below(difference, s.point(0), (1.0 / square_root(dd)) * d, s, deep);
 }
 
@@ -87,10 +86,11 @@ Penetration expand_as(SilentObserver&, const CoreDifference& d, Simplex& s) {
 Penetration expand_as(Recorder& r, const CoreDifference& d, Simplex& s) { return expand_polytope(d, s, d.centre(), r); }
 
 // Steps that are to be seen are taken one by one.
-bool shortcut_as(SilentObserver&, const CoreDifference& d, Simplex& s, Penetration& deep) {
-    return is_deep_at_once(d, s, deep);
+LENDULET_FORCE_INLINE bool is_deep_as(SilentObserver&, const CoreDifference& difference, Vec3d d, Simplex& s,
+                                      Penetration& deep) {
+    return is_deep_at_once(difference, d, s, deep);
 }
-bool shortcut_as(Recorder&, const CoreDifference&, Simplex&, Penetration&) { return false; }
+bool is_deep_as(Recorder&, const CoreDifference&, Vec3d, Simplex&, Penetration&) { return false; }
 
 // Where a flat or a side of a curved core gave the last normal it mostly gives the next one too: apart, its two points
 // prove themselves; overlapping, a small polytope does.
@@ -118,10 +118,13 @@ bool is_as_before(const CoreDifference& difference, GjkCache& cache, ConvexDista
     return true;
 }
 
-// From the points remembered or, in a cold query, from one.
-void start(const CoreDifference& difference, const GjkCache& cache, Simplex& s) {
+// From the points remembered or, in a cold query, from one, whose direction is given.
+Vec3d start(const CoreDifference& difference, const GjkCache& cache, Simplex& s) {
     for (int i = 0; i < cache.count && i < 4; ++i) s.add(difference.point(cache.a[i], cache.b[i]));
-    if (s.count == 0) s.add(difference.support(first_direction(difference)));
+    if (s.count > 0) return {};
+    const Vec3d d = first_direction(difference);
+    s.add(difference.support(d));
+    return d;
 }
 
 template <class Observer>
@@ -132,10 +135,10 @@ LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCach
     if (is_as_before(difference, cache, result)) return result;
     Simplex s;
     Penetration deep;
-    Search found{Outcome::overlap, {}, {}, 0.0, 0.0, 0};
-    start(difference, cache, s);
-    const bool is_deep = shortcut_as(observer, difference, s, deep);
-    if (!is_deep) found = search_as(observer, difference, s, method, max_distance);
+    const Vec3d d = start(difference, cache, s);
+    const bool is_deep = is_deep_as(observer, difference, d, s, deep);
+    Search found = is_deep ? Search{Outcome::overlap, {}, {}, 0.0, 0.0, 0}
+                           : search_as(observer, difference, s, method, max_distance);
     // Rounding in slivers of simplices can end the search early or take the origin for enclosed. Neither goes
     // unnoticed: the bounds of the distance stay apart, or the depth comes out negative. The polytope then settles the
     // one, and a new search from its separating direction the other.
