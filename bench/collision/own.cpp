@@ -137,7 +137,7 @@ private:
     double answer(int first, int k) const {
         const lendulet::BatchManifold& m = lists_->out[k];
         const bool is_pile = data_.set->is_pile(), apart = lists_->clearance[k] > contact_margin;
-        if (!apart && m.count == 0) return answer_single(static_cast<size_t>(first + k), is_pile);
+        if (!apart & (m.count == 0)) return answer_single(static_cast<size_t>(first + k), is_pile);
         float least = m.points[0].separation;  // those that are absent are far above
         for (int i = 1; i < 4; ++i) least = minimum(least, m.points[i].separation);
         return !apart ? least : is_pile ? contact_margin : failed;
