@@ -13,6 +13,8 @@ namespace {
 
 // Relative to S .
 constexpr double certified_depth = 5e-6, certified_tangent = 1e-9;
+// A first support point that lies this far beyond the origin tells that the cores overlap, but for few pairs that
+// nearly touch.
 constexpr double beyond_doubt = 0.05;
 constexpr uint8_t all_points[4] = {0, 1, 2, 3};
 
