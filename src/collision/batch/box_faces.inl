@@ -237,6 +237,19 @@ LENDULET_FORCE_INLINE PlacedPoint<F> farthest_of(const Candidates<F>& c, const F
     }
 }
 
+// Of all twelve; a single lane goes through them one by one.
+template <class F>
+LENDULET_FORCE_INLINE ChosenPoint<F> farthest_of(const Candidates<F>& c, const F* places) {
+    if constexpr (lanes_of<F> == 1) {
+        int best = 0;
+        for (int q = 1; q < 12; ++q)
+            if (places[q] > places[best]) best = q;
+        return {c.u[best], c.v[best], c.separation[best], c.name[best]};
+    } else {
+        return farthest_of<0, 12>(c, places).point;
+    }
+}
+
 // The candidate with the best score, and of those as good the one that is farthest by `place`; see pick() in clip.cpp.
 // Returns the score.
 template <class F, class Score, class Place>
@@ -246,7 +259,7 @@ LENDULET_FORCE_INLINE F pick(const Candidates<F>& c, ChosenPoint<F>& chosen, Sco
     for (int q = 0; q < 12; ++q) scores[q] = score(q);
     F best = most_of(scores, none), limit = best - splat<F>(score_tie) * absolute(best);
     for (int q = 0; q < 12; ++q) places[q] = select(scores[q] >= limit, place(q), none);
-    chosen = farthest_of<0, 12>(c, places).point;
+    chosen = farthest_of(c, places);
     return best;
 }
 
@@ -268,7 +281,7 @@ LENDULET_FORCE_INLINE F choose_points(const Candidates<F>& c, F way, ChosenPoint
         return (b.u - a.u) * (c.v[q] - a.v) - (b.v - a.v) * (c.u[q] - a.u);
     };
     for (int q = 0; q < 12; ++q) places[q] = select(c.separation[q] <= limit, along[q], splat<F>(lowest_score));
-    p[0] = farthest_of<0, 12>(c, places).point;
+    p[0] = farthest_of(c, places);
     auto distance = [&](int q) {
         F du = c.u[q] - p[0].u, dv = c.v[q] - p[0].v;
         return worth[q] * (du * du + dv * dv);
