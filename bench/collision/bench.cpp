@@ -98,7 +98,9 @@ Result<int> bench_collision(const CollisionOptions& options) {
     add_ccd_subjects(subjects);
     add_fcl_subjects(subjects);
     CollisionRows rows;
-    for (const PairSet& set : make_pair_sets(options.pairs)) {
+    std::vector<PairSet> sets = make_pair_sets(options.pairs);
+    sets.push_back(make_pile_set(std::max(options.pairs / 5, 16)));
+    for (const PairSet& set : sets) {
         size_t from = rows.size();
         measure(set, subjects, options.repeats, rows);
         print(rows, from);

@@ -37,7 +37,7 @@ public:
         return std::string("lendulet distance, ") +
                (solver_ == SimplexSolver::half_space ? "half-space" : "barycentric") + (warm_ ? ", warm" : "");
     }
-    bool takes(const PairSet&) const override { return true; }
+    bool takes(const PairSet& set) const override { return !set.is_pile(); }
     bool moved() const override { return warm_; }
     void load(const PairSet& set) override { data_.load(set), caches_.assign(data_.size(), {}); }
     void rewind() override {
@@ -71,6 +71,13 @@ double deepest(const Manifold& m) {
     return d;
 }
 
+// What collide() answers; no manifold: too far apart, which is right in a pile alone.
+double collide_one(const CollidePair& pair, PairCache& cache, bool is_pile) {
+    Manifold m;
+    if (collide(pair, cache, {}, &m, 1) == 1) return deepest(m);
+    return is_pile ? contact_margin : failed;
+}
+
 // One pair after the other.
 class SingleManifold : public PairSubject {
 public:
@@ -81,11 +88,9 @@ public:
     void rewind() override { caches_.assign(data_.size(), {}); }
     void run(std::vector<double>& answers) override {
         for (size_t i = 0; i < data_.size(); ++i) {
-            Manifold m;
             const Transform& t = data_.pose[i];
-            int count = collide({&data_.a[i], &data_.b[i], {}, t.rotation, t.translation, contact_margin}, caches_[i],
-                                {}, &m, 1);
-            answers[i] = count == 1 ? deepest(m) : failed;
+            answers[i] = collide_one({&data_.a[i], &data_.b[i], {}, t.rotation, t.translation, contact_margin},
+                                     caches_[i], data_.set->is_pile());
         }
     }
 
@@ -103,44 +108,61 @@ public:
     }
     double allowed() const override { return preference; }
     void load(const PairSet& set) override {
-        frames_.assign(2 * set.cases.size(), {});
-        for (size_t i = 0; i < set.cases.size(); ++i) {
-            const ConvexCase& c = set.cases[i];
-            fill(frames_[2 * i], c.a, {});
-            fill(frames_[2 * i + 1], c.b, c.b_in_a);
+        frames_.clear(), a_ = set.a, b_ = set.b;
+        data_.load(set);
+        for (const PlacedBox& box : set.boxes)
+            add_frame(box.half, {from_origin(box.pose.position), box.pose.orientation});
+        if (set.is_pile()) return;
+        for (const ConvexCase& c : set.cases) {
+            a_.push_back(add_frame(std::get<Box>(c.a).half_extents, {}));
+            b_.push_back(add_frame(std::get<Box>(c.b).half_extents, c.b_in_a));
         }
     }
     void run(std::vector<double>& answers) override {
-        const int total = static_cast<int>(frames_.size() / 2);
+        const int total = static_cast<int>(a_.size());
         for (int first = 0; first < total; first += batch_capacity) {
             const int count = total - first < batch_capacity ? total - first : batch_capacity;
             for (int k = 0; k < count; ++k) {
-                lists_->a[k] = 2 * (first + k), lists_->b[k] = 2 * (first + k) + 1;
+                const auto i = static_cast<size_t>(first + k);
+                lists_->a[k] = a_[i], lists_->b[k] = b_[i];
                 lists_->margin[k] = contact_margin, lists_->way[k] = lists_->feature[k] = 0.0f;
             }
             BoxBatch batch = lists_->batch(frames_.data(), count);
             kernels_.collide_boxes(batch);
-            for (int k = 0; k < count; ++k) {
-                const lendulet::BatchManifold& m = lists_->out[k];
-                double least = 1e30;
-                for (int j = 0; j < m.count; ++j) least = std::min<double>(least, m.points[j].separation);
-                answers[static_cast<size_t>(first + k)] = m.count > 0 ? least : failed;
-            }
+            for (int k = 0; k < count; ++k) answers[static_cast<size_t>(first + k)] = answer(first, k);
         }
     }
 
 private:
-    static void fill(ShapeFrame& f, const Shape& shape, const Transform& t) {
-        const Vec3 half = std::get<Box>(shape).half_extents;
+    double answer(int first, int k) const {
+        const lendulet::BatchManifold& m = lists_->out[k];
+        const bool is_pile = data_.set->is_pile(), apart = lists_->clearance[k] > contact_margin;
+        if (!apart & (m.count == 0)) return answer_single(static_cast<size_t>(first + k), is_pile);
+        float least = m.points[0].separation;  // those that are absent are far above
+        for (int i = 1; i < 4; ++i) least = minimum(least, m.points[i].separation);
+        return !apart ? least : is_pile ? contact_margin : failed;
+    }
+    // As a step does: where the features that face each other do not overlap, the distance query decides.
+    double answer_single(size_t i, bool is_pile) const {
+        PairCache cache;
+        const Transform& t = data_.pose[i];
+        return collide_one({&data_.a[i], &data_.b[i], {}, t.rotation, t.translation, contact_margin}, cache, is_pile);
+    }
+    int32_t add_frame(Vec3 half, const Transform& t) {
+        ShapeFrame f{};
         const Quat q = t.rotation;
         const float rotation[4] = {q.x, q.y, q.z, q.w};
         for (int k = 0; k < 4; ++k) f.rotation[k] = rotation[k];
         for (int k = 0; k < 3; ++k) f.half[k] = component(half, k), f.centre[k] = component(t.translation, k);
         f.near = contact_margin;
         f.reach = f.radius = length(half);
+        frames_.push_back(f);
+        return static_cast<int32_t>(frames_.size()) - 1;
     }
     const NarrowKernels& kernels_;
+    Loaded data_;
     std::vector<ShapeFrame> frames_;
+    std::vector<int32_t> a_, b_;
     std::unique_ptr<BoxLists<batch_capacity, 16>> lists_ = std::make_unique<BoxLists<batch_capacity, 16>>();
 };
 

@@ -86,16 +86,6 @@ double depth(const Solid& a, const Solid& b) {
 
 Geometry geometry_of(const Shape& shape) { return make_geometry(shape).value(); }
 
-double truth_of(const Shape& a, const Shape& b, const Transform& t) {
-    const Solid sa = solid_of(a, {}), sb = solid_of(b, t);
-    const Geometry ga = geometry_of(a), gb = geometry_of(b);
-    GjkCache cold;
-    ConvexDistance d = distance({&ga, &gb, t}, cold, SimplexSolver::barycentric, 1e30f);
-    if (d.distance <= 1e-6f) return depth(sa, sb);
-    Vec n = wide(d.normal);
-    return separation(sa, sb, (1.0 / norm(n)) * n);
-}
-
 // Moves B along the normal until the shapes are `wanted` apart: that stays the separation along it, so apart it is the
 // distance, and overlapping a bound of the depth.
 Transform placed(const Shape& a, const Shape& b, Transform t, float wanted) {
@@ -154,6 +144,16 @@ PairSet make_set(const char* kind, const Regime& regime, int count, Make&& make)
 }
 
 }  // namespace
+
+double truth_of(const Shape& a, const Shape& b, const Transform& t) {
+    const Solid sa = solid_of(a, {}), sb = solid_of(b, t);
+    const Geometry ga = geometry_of(a), gb = geometry_of(b);
+    GjkCache cold;
+    ConvexDistance d = distance({&ga, &gb, t}, cold, SimplexSolver::barycentric, 1e30f);
+    if (d.distance <= 1e-6f) return depth(sa, sb);
+    Vec n = wide(d.normal);
+    return separation(sa, sb, (1.0 / norm(n)) * n);
+}
 
 std::vector<PairSet> make_pair_sets(int pairs) {
     std::vector<PairSet> sets;

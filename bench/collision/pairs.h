@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lendulet/shapes.h"
+#include "lendulet/world.h"
 
 namespace lendulet::bench {
 
@@ -19,16 +20,33 @@ struct ConvexCase {
     double truth, truth_moved;  // distance, m; negative: depth
 };
 
+// A box in the world.
+struct PlacedBox {
+    Vec3 half;
+    Pose pose;
+};
+
 struct PairSet {
     std::string name;  // "box-box far"
     bool overlapping;
     std::vector<ConvexCase> cases;
+    // Of a pile: its boxes, and which of them the cases are. Pairs are those that a broad phase gives, most of them
+    // apart: what gives manifolds is asked for these, and answers `contact_margin` where they are farther than that.
+    std::vector<PlacedBox> boxes{};
+    std::vector<int32_t> a{}, b{};
+    bool is_pile() const { return !boxes.empty(); }
 };
 
 // Boxes with half extents from 0.25 to 1 m: far (0.1 to 2 m apart), near (1e-4 to 1e-2 m), touching, overlapping by 1
 // to 50 mm and by 0.1 to 0.5 m; hulls of 32 points on a ball of a metre, drawn from 64 of
 // them, far and deep.
 std::vector<PairSet> make_pair_sets(int pairs);
+// All pairs of a settled pile of boxes of half a metre whose bounds, widened by 5 cm, overlap. Sorted.
+PairSet make_pile_set(int bodies);
+// All boxes of a world, static ones too, in the order of its bodies.
+std::vector<PlacedBox> boxes_of(const World& world);
+// Distance of a pair, m; negative: depth. See pairs.cpp for how it is known.
+double truth_of(const Shape& a, const Shape& b, const Transform& b_in_a);
 
 // How far apart shapes may be for a manifold, m.
 inline constexpr float contact_margin = 0.02f;
@@ -74,11 +92,7 @@ void measure_rays(int rays, int bodies, int repeats, CollisionRows& rows);
 
 // The pile and the rays, for the peers: boxes of half a metre at these poses, beside static boxes.
 struct RayScene {
-    struct Placed {
-        Vec3 half;
-        Pose pose;
-    };
-    std::vector<Placed> boxes;
+    std::vector<PlacedBox> boxes;
     std::vector<Vec3> from, to;
     std::vector<double> fractions;  // of this engine's hits, above 1: none
 };

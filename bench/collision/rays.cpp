@@ -43,19 +43,6 @@ void make_rays(const World& world, int count, std::vector<Ray>& rays, RayScene& 
     }
 }
 
-void add_boxes(const World& world, RayScene& scene) {
-    for (int i = 0; i < world.body_count(); ++i) {
-        StaticBodyRef body = world.get_static(world.body(i));
-        for (int k = 0; k < body.collider_count(); ++k)
-            if (const auto* box = std::get_if<Box>(&body.shape(k))) {
-                Transform local = body.collider_pose(k);
-                scene.boxes.push_back({box->half_extents,
-                                       {body.position() + rotate(body.orientation(), local.translation),
-                                        body.orientation() * local.rotation}});
-            }
-    }
-}
-
 }  // namespace
 
 void measure_rays(int count, int bodies, int repeats, CollisionRows& rows) {
@@ -64,7 +51,7 @@ void measure_rays(int count, int bodies, int repeats, CollisionRows& rows) {
     std::vector<Ray> rays;
     RayScene scene;
     make_rays(pile.world, count, rays, scene);
-    add_boxes(pile.world, scene);
+    scene.boxes = boxes_of(pile.world);
     std::vector<QueryHit> hits(rays.size()), single(rays.size());
     std::vector<double> batched_times, single_times;
     for (int round = 0; round < repeats; ++round) {

@@ -211,6 +211,16 @@ Penetration expand(const CoreDifference& difference, Polytope& polytope, SmoothM
     }
 }
 
+// Support points around n that lean from it by `lean` (rad, small angles), and the one opposite to it.
+void add_ring(const CoreDifference& difference, Vec3d n, double lean, Simplex& s) {
+    Vec3d p, q;
+    complete_frame(n, p, q);
+    s.add(difference.support(n + lean * p));
+    s.add(difference.support(n - (0.5 * lean) * p + (0.8660254 * lean) * q));
+    s.add(difference.support(n - (0.5 * lean) * p - (0.8660254 * lean) * q));
+    s.add(difference.support(-n));
+}
+
 // Takes a point that lies beyond one of the first four faces.
 void take_beyond(Polytope& polytope, const DifferencePoint& p, double tolerance) {
     int best = 0;
@@ -242,20 +252,30 @@ bool expand_around(const CoreDifference& difference, const Tangency& known, Simp
     constexpr double widest = 0.5;  // rad
     const double size = difference.size;
     const double lean = minimum(widest, square_root(8.0 * 0.25 * surface_smooth * size / known.height));
-    const Vec3d n = known.direction;
-    Vec3d p, q;
-    complete_frame(n, p, q);
     simplex.count = 0;
-    simplex.add(difference.support(n + lean * p));
-    simplex.add(difference.support(n - (0.5 * lean) * p + (0.8660254 * lean) * q));
-    simplex.add(difference.support(n - (0.5 * lean) * p - (0.8660254 * lean) * q));
-    simplex.add(difference.support(-n));
+    add_ring(difference, known.direction, lean, simplex);
     if (!spans_well(simplex)) return false;
     Polytope polytope;
     polytope.start(simplex, merge * size);
     take_beyond(polytope, known.p, surface_curved * size);
     SmoothMinimum smooth{known, true, 0.0};
     SilentObserver silent;
+    out = expand(difference, polytope, smooth, simplex, silent);
+    return true;
+}
+
+bool expand_below(const CoreDifference& difference, const DifferencePoint& top, Vec3d direction, Simplex& simplex,
+                  Penetration& out) {
+    constexpr double lean = 0.55;  // rad
+    Simplex s;
+    add_ring(difference, direction, lean, s);
+    if (!spans_well(s)) return false;
+    Polytope polytope;
+    polytope.start(s, merge * difference.size);
+    take_beyond(polytope, top, surface * difference.size);
+    SmoothMinimum smooth{{}, false, -1.0};
+    SilentObserver silent;
+    simplex = s;
     out = expand(difference, polytope, smooth, simplex, silent);
     return true;
 }

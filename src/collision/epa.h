@@ -28,6 +28,13 @@ Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, 
 template <class Observer>
 Penetration expand_polytope(const CoreDifference& difference, Simplex& simplex, Vec3d hint, Observer& observer);
 
+// Where cores overlap so far that most directions meet the surface far from the origin: `top` is the support point
+// along the unit `direction`. The polytope begins with it, points around it and the one opposite, whether or not these
+// hold the origin; the depth comes out negative where nothing does. Not for curved differences. False where the points
+// span no volume.
+bool expand_below(const CoreDifference& difference, const DifferencePoint& top, Vec3d direction, Simplex& simplex,
+                  Penetration& out);
+
 // Where the nearest point is known but for the proof: the polytope begins with it and points around and opposite to it,
 // which are left in `simplex`. False where these do not enclose the origin.
 bool expand_around(const CoreDifference& difference, const Tangency& known, Simplex& simplex, Penetration& out);

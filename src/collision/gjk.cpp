@@ -2,6 +2,7 @@
 // write witness points and the simplex to remember.
 #include "collision/gjk.h"
 
+#include "collision/box_depth.h"
 #include "collision/epa.h"
 #include "collision/gjk_newton.h"
 #include "collision/gjk_search.h"
@@ -12,14 +13,15 @@ namespace {
 
 // Relative to S .
 constexpr double certified_depth = 5e-6, certified_tangent = 1e-9;
+// A first support point that lies this far beyond the origin tells that the cores overlap, but for few pairs that
+// nearly touch.
+constexpr double beyond_doubt = 0.05;
 constexpr uint8_t all_points[4] = {0, 1, 2, 3};
 
-void start(const CoreDifference& difference, const GjkCache& cache, Simplex& s) {
-    for (int i = 0; i < cache.count && i < 4; ++i) s.add(difference.point(cache.a[i], cache.b[i]));
-    if (s.count > 0) return;
-    Vec3d centre = difference.centre();
-    if (!(largest_component(centre) > 0.0)) centre = {0.0, 1.0, 0.0};
-    s.add(difference.support(-centre));
+// Where a search begins that remembers nothing: from the middle of the difference towards the origin.
+Vec3d first_direction(const CoreDifference& difference) {
+    const Vec3d centre = difference.centre();
+    return largest_component(centre) > 0.0 ? -centre : Vec3d{0.0, -1.0, 0.0};
 }
 
 void remember(const Simplex& s, Vec3 direction, GjkCache& cache) {
@@ -56,6 +58,22 @@ ConvexDistance result_overlapping(const CoreDifference& difference, const Penetr
     return result;
 }
 
+bool are_both(const CoreDifference& difference, GeometryKind kind) {
+    return difference.a.kind == kind && difference.b.kind == kind;
+}
+
+// Where the first point of a cold query, found along d, or the four points of a warm one (d is zero) tell that boxes or
+// hulls will overlap, their depth needs no search. Where it is not found after all, the search begins with the same
+// points.
+LENDULET_FORCE_INLINE bool is_deep_at_once(const CoreDifference& difference, Vec3d d, Simplex& s, Penetration& deep) {
+    const double height = dot(d, s.y[0]), dd = dot(d, d), far = beyond_doubt * difference.size;
+    const bool beyond = height > 0.0 && height * height > far * far * dd;
+    if (!beyond && s.count < 4) return false;
+    if (are_both(difference, GeometryKind::box)) return depth_of_boxes(difference, s, deep);
+    if (!beyond || !are_both(difference, GeometryKind::hull)) return false;
+    return expand_below(difference, s.point(0), (1.0 / square_root(dd)) * d, s, deep);
+}
+
 // The observer's calls go to the untemplated functions where it is silent.
 Search search_as(SilentObserver&, const CoreDifference& d, Simplex& s, SimplexSolver method, double max_distance) {
     return search(d, s, method, max_distance);
@@ -64,9 +82,17 @@ Search search_as(Recorder& r, const CoreDifference& d, Simplex& s, SimplexSolver
     return search(d, s, method, max_distance, r);
 }
 Penetration expand_as(SilentObserver&, const CoreDifference& d, Simplex& s) {
-    return expand_polytope(d, s, d.centre());
+    Penetration deep;
+    return are_both(d, GeometryKind::box) && depth_of_boxes(d, s, deep) ? deep : expand_polytope(d, s, d.centre());
 }
 Penetration expand_as(Recorder& r, const CoreDifference& d, Simplex& s) { return expand_polytope(d, s, d.centre(), r); }
+
+// Steps that are to be seen are taken one by one.
+LENDULET_FORCE_INLINE bool is_deep_as(SilentObserver&, const CoreDifference& difference, Vec3d d, Simplex& s,
+                                      Penetration& deep) {
+    return is_deep_at_once(difference, d, s, deep);
+}
+bool is_deep_as(Recorder&, const CoreDifference&, Vec3d, Simplex&, Penetration&) { return false; }
 
 // Where a flat or a side of a curved core gave the last normal it mostly gives the next one too: apart, its two points
 // prove themselves; overlapping, a small polytope does.
@@ -94,6 +120,15 @@ bool is_as_before(const CoreDifference& difference, GjkCache& cache, ConvexDista
     return true;
 }
 
+// From the points remembered or, in a cold query, from one, whose direction is given.
+Vec3d start(const CoreDifference& difference, const GjkCache& cache, Simplex& s) {
+    for (int i = 0; i < cache.count && i < 4; ++i) s.add(difference.point(cache.a[i], cache.b[i]));
+    if (s.count > 0) return {};
+    const Vec3d d = first_direction(difference);
+    s.add(difference.support(d));
+    return d;
+}
+
 template <class Observer>
 LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCache& cache, SimplexSolver method,
                                                  float max_distance, Observer& observer) {
@@ -101,14 +136,17 @@ LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCach
     ConvexDistance result;
     if (is_as_before(difference, cache, result)) return result;
     Simplex s;
-    start(difference, cache, s);
-    Search found = search_as(observer, difference, s, method, max_distance);
+    Penetration deep;
+    const Vec3d d = start(difference, cache, s);
+    const bool is_deep = is_deep_as(observer, difference, d, s, deep);
+    Search found = is_deep ? Search{Outcome::overlap, {}, {}, 0.0, 0.0, 0}
+                           : search_as(observer, difference, s, method, max_distance);
     // Rounding in slivers of simplices can end the search early or take the origin for enclosed. Neither goes
     // unnoticed: the bounds of the distance stay apart, or the depth comes out negative. The polytope then settles the
     // one, and a new search from its separating direction the other.
     bool doubtful = found.outcome == Outcome::apart && !(found.gap <= certified_distance * difference.size);
     if (found.outcome == Outcome::overlap || doubtful) {
-        Penetration deep = expand_as(observer, difference, s);
+        if (!is_deep) deep = expand_as(observer, difference, s);
         result = result_overlapping(difference, deep, found.iterations);
         if (deep.depth < -certified_distance * difference.size) {
             s.count = 0;

@@ -55,7 +55,9 @@ public:
         constexpr const char* names[] = {"libccd GJK, yes or no", "libccd GJK and EPA", "libccd portals"};
         return names[static_cast<int>(routine_)];
     }
-    bool takes(const PairSet& set) const override { return set.overlapping != (routine_ == Routine::intersect); }
+    bool takes(const PairSet& set) const override {
+        return !set.is_pile() && set.overlapping != (routine_ == Routine::intersect);
+    }
     void load(const PairSet& set) override {
         set_ = &set;
         a_.clear(), b_.clear(), shared_.clear();

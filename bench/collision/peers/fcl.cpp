@@ -43,6 +43,7 @@ public:
     bool takes(const PairSet&) const override { return true; }
     void load(const PairSet& set) override {
         overlapping_ = set.overlapping;
+        apart_ = set.is_pile() ? contact_margin : failed;
         a_.clear(), b_.clear(), pose_.clear(), shared_.clear();
         for (const ConvexCase& c : set.cases) {
             a_.push_back(shared_.of(c.a, shape_of));
@@ -57,7 +58,7 @@ public:
                 fcl::CollisionRequestd request(1, true);
                 fcl::CollisionResultd result;
                 fcl::collide(a_[i].get(), still, b_[i].get(), pose_[i], request, result);
-                answers[i] = result.isCollision() ? -std::abs(result.getContact(0).penetration_depth) : failed;
+                answers[i] = result.isCollision() ? -std::abs(result.getContact(0).penetration_depth) : apart_;
             } else {
                 fcl::DistanceRequestd request(true);
                 request.distance_tolerance = 1e-9;
@@ -69,6 +70,7 @@ public:
 
 private:
     bool overlapping_ = false;
+    double apart_ = failed;
     SharedShapes<fcl::CollisionGeometryd> shared_;
     std::vector<std::shared_ptr<fcl::CollisionGeometryd>> a_, b_;
     std::vector<fcl::Transform3d> pose_;

@@ -7,8 +7,8 @@ constexpr float lowest_score = -3e38f;
 // Boxes that move fast may meet at several corners of their faces before the step ends, which only a manifold of faces
 // lists: they get one unless an edge axis separates better by this part of how far they can come.
 constexpr float fast_tolerance = 0.25f;
-// Faces that are parallel to within acos of this, 0.02 rad, meet as faces whatever axis separates best.
-constexpr float parallel_faces = 0.9998f;
+// Faces that are parallel to within acos of this, 0.01 rad, meet as faces whatever axis separates best.
+constexpr float parallel_faces = 0.99995f;
 
 template <class F>
 struct WideBox {

@@ -106,10 +106,20 @@ LENDULET_FORCE_INLINE F name_of_point(F reference, F incident) {
 }
 
 // Candidates: 2 e where incident edge e enters the reference face and 2 e + 1 where it leaves it, 8..11 the corners of
-// the reference face that lie within the incident one.
+// the reference face that lie within the incident one. Those that are not there are not numbers: no comparison with
+// them holds, so that they are neither extremes nor chosen.
 template <class F>
 struct Candidates {
-    F u[12], v[12], separation[12], name[12], there[12];  // there: 1 or 0
+    F u[12], v[12], separation[12], name[12];
+
+    template <class M>
+    LENDULET_FORCE_INLINE void put(int q, M there, F at_u, F at_v, F at_separation, F named) {
+        const F absent = splat<F>(__builtin_nanf(""));
+        u[q] = select(there, at_u, absent);
+        v[q] = select(there, at_v, absent);
+        separation[q] = select(there, at_separation, absent);
+        name[q] = named;
+    }
 };
 
 constexpr float corner_1[4] = {1.0f, -1.0f, -1.0f, 1.0f}, corner_2[4] = {1.0f, 1.0f, -1.0f, -1.0f};
@@ -155,10 +165,8 @@ LENDULET_FORCE_INLINE void clip_edges(const WideFaces<F>& f, F slack_u, F slack_
         auto at_corner = (enter_u <= zero) & (enter_v <= zero);
         F corner_name = incident.corner(bit_of(corner_1[e]), bit_of(corner_2[e]));
         auto put = [&](int q, F t, auto valid, F name) {
-            c.u[q] = corner.x + t * along.x, c.v[q] = corner.y + t * along.y;
-            c.separation[q] = (corner.z + t * along.z) - f.half_w;
-            c.there[q] = select(valid & (c.separation[q] <= margin), one, zero);
-            c.name[q] = name;
+            F separation = (corner.z + t * along.z) - f.half_w;
+            c.put(q, valid & (separation <= margin), corner.x + t * along.x, corner.y + t * along.y, separation, name);
         };
         put(2 * e, t0, t0 <= t1,
             select(at_corner, name_of_point(face, corner_name), name_of_point(enters, incident_edge)));
@@ -181,11 +189,10 @@ LENDULET_FORCE_INLINE void project_corners(const WideFaces<F>& f, F slack, F mar
         F u = splat<F>(corner_1[e]) * f.half_u, v = splat<F>(corner_2[e]) * f.half_v;
         F du = u - f.centre.x, dv = v - f.centre.y;
         F p1 = inverse * (du * f.edge_2.y - dv * f.edge_2.x), p2 = inverse * (f.edge_1.x * dv - f.edge_1.y * du);
-        c.u[q] = u, c.v[q] = v;
-        c.separation[q] = (f.centre.z + p1 * f.edge_1.z + p2 * f.edge_2.z) - f.half_w;
-        auto inside = (absolute(p1) < in_1) & (absolute(p2) < in_2) & (c.separation[q] <= margin);
-        c.there[q] = select(inside, one, zero);
-        c.name[q] = name_of_point(reference.corner(bit_of(corner_1[e]), bit_of(corner_2[e])), face);
+        F separation = (f.centre.z + p1 * f.edge_1.z + p2 * f.edge_2.z) - f.half_w;
+        auto inside = (absolute(p1) < in_1) & (absolute(p2) < in_2) & (separation <= margin);
+        c.put(q, inside, u, v, separation,
+              name_of_point(reference.corner(bit_of(corner_1[e]), bit_of(corner_2[e])), face));
     }
 }
 
@@ -194,41 +201,77 @@ struct ChosenPoint {
     F u, v, separation, name;
 };
 
-// The candidate with the best score; see pick() in clip.cpp. Returns the score.
-template <class F, class Score>
-LENDULET_FORCE_INLINE F pick(const Candidates<F>& c, const F* along, float end, ChosenPoint<F>& chosen, Score&& score) {
-    const F none = splat<F>(lowest_score), half = splat<F>(0.5f);
-    F scores[12], best = none;
-    for (int q = 0; q < 12; ++q) {
-        scores[q] = select(c.there[q] > half, score(q), none);
-        best = maximum(scores[q], best);
+// The extremes of twelve values by four short chains, which do not wait for each other; what is not a number is passed
+// over.
+template <class F>
+LENDULET_FORCE_INLINE F least_of(const F* x, F beyond) {
+    F least[4];
+    for (int k = 0; k < 4; ++k) least[k] = minimum(x[8 + k], minimum(x[4 + k], minimum(x[k], beyond)));
+    return minimum(minimum(least[0], least[1]), minimum(least[2], least[3]));
+}
+template <class F>
+LENDULET_FORCE_INLINE F most_of(const F* x, F beneath) {
+    F most[4];
+    for (int k = 0; k < 4; ++k) most[k] = maximum(x[8 + k], maximum(x[4 + k], maximum(x[k], beneath)));
+    return maximum(maximum(most[0], most[1]), maximum(most[2], most[3]));
+}
+
+// Of `count` candidates from `first` on the one with the largest place, of equal ones the first. By halves: the depth
+// of comparisons that wait for each other is that of a tree.
+template <class F>
+struct PlacedPoint {
+    F place;
+    ChosenPoint<F> point;
+};
+template <int first, int count, class F>
+LENDULET_FORCE_INLINE PlacedPoint<F> farthest_of(const Candidates<F>& c, const F* places) {
+    if constexpr (count == 1) {
+        return {places[first], {c.u[first], c.v[first], c.separation[first], c.name[first]}};
+    } else {
+        const PlacedPoint<F> a = farthest_of<first, count / 2>(c, places);
+        const PlacedPoint<F> b = farthest_of<first + count / 2, count - count / 2>(c, places);
+        auto later = b.place > a.place;
+        return {select(later, b.place, a.place),
+                {select(later, b.point.u, a.point.u), select(later, b.point.v, a.point.v),
+                 select(later, b.point.separation, a.point.separation), select(later, b.point.name, a.point.name)}};
     }
-    F limit = best - splat<F>(score_tie) * absolute(best), farthest = none;
-    chosen = {splat<F>(0.0f), splat<F>(0.0f), splat<F>(0.0f), splat<F>(0.0f)};
-    for (int q = 0; q < 12; ++q) {
-        F place = splat<F>(end) * along[q];
-        auto better = (c.there[q] > half) & (scores[q] >= limit) & (place > farthest);
-        farthest = select(better, place, farthest);
-        chosen.u = select(better, c.u[q], chosen.u);
-        chosen.v = select(better, c.v[q], chosen.v);
-        chosen.separation = select(better, c.separation[q], chosen.separation);
-        chosen.name = select(better, c.name[q], chosen.name);
+}
+
+// Of all twelve; a single lane goes through them one by one.
+template <class F>
+LENDULET_FORCE_INLINE ChosenPoint<F> farthest_of(const Candidates<F>& c, const F* places) {
+    if constexpr (lanes_of<F> == 1) {
+        int best = 0;
+        for (int q = 1; q < 12; ++q)
+            if (places[q] > places[best]) best = q;
+        return {c.u[best], c.v[best], c.separation[best], c.name[best]};
+    } else {
+        return farthest_of<0, 12>(c, places).point;
     }
+}
+
+// The candidate with the best score, and of those as good the one that is farthest by `place`; see pick() in clip.cpp.
+// Returns the score.
+template <class F, class Score, class Place>
+LENDULET_FORCE_INLINE F pick(const Candidates<F>& c, ChosenPoint<F>& chosen, Score&& score, Place&& place) {
+    const F none = splat<F>(lowest_score);
+    F scores[12], places[12];
+    for (int q = 0; q < 12; ++q) scores[q] = score(q);
+    F best = most_of(scores, none), limit = best - splat<F>(score_tie) * absolute(best);
+    for (int q = 0; q < 12; ++q) places[q] = select(scores[q] >= limit, place(q), none);
+    chosen = farthest_of(c, places);
     return best;
 }
 
 // At most four of the candidates, as thin_points chooses but for what they are worth; returns how many.
 template <class F>
 LENDULET_FORCE_INLINE F choose_points(const Candidates<F>& c, F way, ChosenPoint<F>* p) {
-    const F zero = splat<F>(0.0f), one = splat<F>(1.0f), half = splat<F>(0.5f), huge = splat<F>(3e38f);
-    F along[12], deepest = huge, u0 = huge, u1 = zero - huge, v0 = huge, v1 = zero - huge;
-    for (int q = 0; q < 12; ++q) {
-        auto there = c.there[q] > half;
-        along[q] = c.u[q] + splat<F>(0.618034f) * c.v[q];
-        deepest = minimum(deepest, select(there, c.separation[q], huge));
-        u0 = minimum(u0, select(there, c.u[q], huge)), u1 = maximum(u1, select(there, c.u[q], zero - huge));
-        v0 = minimum(v0, select(there, c.v[q], huge)), v1 = maximum(v1, select(there, c.v[q], zero - huge));
-    }
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f), huge = splat<F>(3e38f);
+    F u0 = least_of(c.u, huge), u1 = most_of(c.u, zero - huge), v0 = least_of(c.v, huge);
+    F v1 = most_of(c.v, zero - huge), deepest = least_of(c.separation, huge), along[12], places[12];
+    for (int q = 0; q < 12; ++q) along[q] = c.u[q] + splat<F>(0.618034f) * c.v[q];
+    auto forward = [&](int q) { return along[q]; };
+    auto backward = [&](int q) { return zero - along[q]; };
     auto any = u0 <= u1;
     F size = select(any, maximum(u1 - u0, v1 - v0), zero);
     F part = maximum(splat<F>(half_worth) * size, maximum(way, splat<F>(1e-30f))), worth[12];
@@ -237,20 +280,23 @@ LENDULET_FORCE_INLINE F choose_points(const Candidates<F>& c, F way, ChosenPoint
     auto twice_area = [&](const ChosenPoint<F>& a, const ChosenPoint<F>& b, int q) {
         return (b.u - a.u) * (c.v[q] - a.v) - (b.v - a.v) * (c.u[q] - a.u);
     };
-    pick(c, along, 1.0f, p[0],
-         [&](int q) { return select(c.separation[q] <= limit, along[q], splat<F>(lowest_score)); });
-    F far = pick(c, along, -1.0f, p[1], [&](int q) {
+    for (int q = 0; q < 12; ++q) places[q] = select(c.separation[q] <= limit, along[q], splat<F>(lowest_score));
+    p[0] = farthest_of(c, places);
+    auto distance = [&](int q) {
         F du = c.u[q] - p[0].u, dv = c.v[q] - p[0].v;
         return worth[q] * (du * du + dv * dv);
-    });
+    };
+    F far = pick(c, p[1], distance, backward);
     F least = reach * square_root(maximum(far, zero));
-    F third = pick(c, along, 1.0f, p[2], [&](int q) { return worth[q] * absolute(twice_area(p[0], p[1], q)); });
+    auto area = [&](int q) { return worth[q] * absolute(twice_area(p[0], p[1], q)); };
+    F third = pick(c, p[2], area, forward);
     F turn = (p[1].u - p[0].u) * (p[2].v - p[0].v) - (p[1].v - p[0].v) * (p[2].u - p[0].u);
     F side = select(turn > zero, splat<F>(-1.0f), one);
-    F fourth = pick(c, along, -1.0f, p[3], [&](int q) {
+    auto outside = [&](int q) {
         F ab = twice_area(p[0], p[1], q), bc = twice_area(p[1], p[2], q), ca = twice_area(p[2], p[0], q);
         return worth[q] * maximum(maximum(side * ab, side * bc), side * ca);
-    });
+    };
+    F fourth = pick(c, p[3], outside, backward);
     F count = select(any, one, zero);
     F second_there = select(far > reach * reach, count, zero);
     F third_there = select(third > least, second_there, zero);

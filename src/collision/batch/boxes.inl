@@ -17,11 +17,26 @@ struct WideManifold {
 
 #include "collision/batch/box_ends.inl"
 
+// Whole numbers as integers, whose bits then travel as floats. Where the mask holds the halves are exchanged: A's
+// feature belongs in the upper one.
+LENDULET_FORCE_INLINE float integer_bits(float x, bool exchanged) {
+    const auto name = static_cast<uint32_t>(static_cast<int32_t>(x));
+    return __builtin_bit_cast(float, exchanged ? name << 16 | name >> 16 : name);
+}
+template <WideFloat F, class M>
+LENDULET_FORCE_INLINE F integer_bits(F x, M exchanged) {
+    using I = Wide<int32_t, lanes_of<F>>;
+    using U = Wide<uint32_t, lanes_of<F>>;
+    const U name = (U) __builtin_convertvector(x, I);
+    return select(exchanged, (F)(name << 16 | name >> 16), (F)name);
+}
+
 template <int W>
-LENDULET_FORCE_INLINE void store_manifolds(BatchManifold* out, const int32_t* index, const float* exchanged,
+LENDULET_FORCE_INLINE void store_manifolds(BatchManifold* out, const int32_t* index, Wide<float, W> exchanged,
                                            const WideManifold<Wide<float, W>>& m) {
     using F = Wide<float, W>;
     constexpr int stride = sizeof(BatchManifold) / sizeof(float);
+    const F zero = splat<F>(0.0f);
     float* base = floats_of(out);
     const F head[4] = {m.normal.x, m.normal.y, m.normal.z, m.follow};
     scatter4<W>(base, index, stride, 0, head);
@@ -29,16 +44,16 @@ LENDULET_FORCE_INLINE void store_manifolds(BatchManifold* out, const int32_t* in
         const F point[4] = {m.position[i].x, m.position[i].y, m.position[i].z, m.separation[i]};
         scatter4<W>(base, index, stride, 4 + 4 * i, point);
     }
-    for (int l = 0; l < W; ++l) {
-        BatchManifold& to = out[index[l]];
-        for (int i = 0; i < 4; ++i) {
-            uint32_t name = static_cast<uint32_t>(static_cast<int32_t>(lane(m.name[i], l)));
-            to.id[i] = exchanged[l] > 0.0f ? name << 16 | name >> 16 : name;  // A's feature in the upper half
-        }
-        to.count = static_cast<int32_t>(lane(m.count, l));
-        to.radius_a = to.radius_b = 0.0f;
-    }
+    auto of_b = exchanged > zero;
+    const F ids[4] = {integer_bits(m.name[0], of_b), integer_bits(m.name[1], of_b), integer_bits(m.name[2], of_b),
+                      integer_bits(m.name[3], of_b)};
+    scatter4<W>(base, index, stride, 20, ids);
+    const F tail[4] = {integer_bits(m.count, zero > zero), zero, zero, zero};
+    scatter4<W>(base, index, stride, 24, tail);
 }
+static_assert(offsetof(BatchManifold, id) == 20 * sizeof(float) &&
+              offsetof(BatchManifold, count) == 24 * sizeof(float) &&
+              offsetof(BatchManifold, unused) == 27 * sizeof(float));
 
 // One block of a list: the pairs, and their boxes with the reference box first.
 template <int W>
@@ -93,7 +108,7 @@ void face_manifolds(BoxBatch& batch, const int32_t* list, int count) {
             m.separation[i] = select(there, q.separation, splat<F>(absent_separation));
             m.name[i] = select(there, q.name, zero);
         }
-        store_manifolds<W>(batch.out, block.pair, block.exchanged, m);
+        store_manifolds<W>(batch.out, block.pair, exchanged, m);
     }
 }
 
@@ -156,7 +171,7 @@ void edge_manifolds(BoxBatch& batch, const int32_t* list, int count) {
                 name_b};
             append_ends(ends_of(edge_a, edge_b, n, separation, margin), a.arm, m);
         }
-        store_manifolds<W>(batch.out, block.pair, block.exchanged, m);
+        store_manifolds<W>(batch.out, block.pair, load_wide<F>(block.exchanged), m);
     }
 }
 

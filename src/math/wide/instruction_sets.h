@@ -27,11 +27,13 @@ template <class Table>
 struct KernelTables {
     const Table *one, *four, *eight, *sixteen;
     const Table *avx2, *avx512;  // of eight and sixteen lanes, for machines that have these instructions
+    const Table* avx512_of_eight = nullptr;
 
     // The widest of at most `width` lanes, in the instructions of this machine.
     const Table& of(int width) const {
         if (width >= 16 && avx512 && cpu_has_avx512()) return *avx512;
         if (width >= 16 && sixteen) return *sixteen;
+        if (width >= 8 && avx512_of_eight && cpu_has_avx512()) return *avx512_of_eight;
         if (width >= 8 && avx2 && cpu_has_avx2()) return *avx2;
         if (width >= 8 && eight) return *eight;
         return width >= 4 || !one ? *four : *one;

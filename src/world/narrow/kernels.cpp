@@ -5,7 +5,7 @@
 namespace lendulet {
 
 extern const NarrowKernels baseline_narrow_1, baseline_narrow_4, baseline_narrow_8, baseline_narrow_16;
-extern const NarrowKernels avx2_narrow, avx512_narrow;
+extern const NarrowKernels avx2_narrow, avx512_narrow, avx512_narrow_8;
 
 namespace {
 
@@ -22,7 +22,7 @@ constexpr KernelTables<NarrowKernels> tables{
     nullptr, nullptr,
 #endif
 #if defined(__x86_64__) && !defined(LENDULET_FOUR_LANES)
-    &avx2_narrow, &avx512_narrow,
+    &avx2_narrow, &avx512_narrow, &avx512_narrow_8,
 #else
     nullptr, nullptr,
 #endif
