@@ -133,9 +133,8 @@ void WideTreeSet::sort_touched() {
 void WideTreeSet::gather(const BroadBox* boxes, Array<uint32_t>& jumped) {
     constexpr size_t ahead = 12;
     sort_touched();
-    const auto marks = static_cast<size_t>(marks_);
-    rows_.resize_unset(marks);
-    row_lane_.resize_unset(marks + ahead);
+    rows_.resize_unset(static_cast<size_t>(marks_));
+    row_lane_.resize_unset(static_cast<size_t>(marks_) + ahead);
     uint32_t* next = row_lane_.data();
     for (uint32_t g : touched_) {
         first_row_[g] = static_cast<uint32_t>(next - row_lane_.data());
@@ -145,6 +144,7 @@ void WideTreeSet::gather(const BroadBox* boxes, Array<uint32_t>& jumped) {
         } while (left &= left - 1);
     }
     uint32_t* lanes = row_lane_.data();
+    const auto marks = static_cast<size_t>(next - lanes);
     for (size_t i = 0; i < ahead && marks > 0; ++i) lanes[marks + i] = lanes[marks - 1];
     const uint32_t* place = place_.data();
     const BroadBox* home = home_.data();

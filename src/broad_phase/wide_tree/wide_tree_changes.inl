@@ -95,8 +95,8 @@ private:
                 }
                 const bool was = meet(mine.before, *before), is = meet(mine.after, *after);
                 const uint32_t a = mine.after.index, b = after->index;
-                const uint32_t to_swap = uint32_t{a < b} ^ uint32_t { is };  // begun pairs ascend, ended ones descend
-                const uint32_t swapped = (a ^ b) & (0u - to_swap);
+                // Begun pairs ascend, ended ones descend; which it is cannot be foreseen.
+                const uint32_t swapped = (a ^ b) & (0u - static_cast<uint32_t>((a < b) != is));
                 *next = {a ^ swapped, b ^ swapped};
                 next += was != is;
             }
