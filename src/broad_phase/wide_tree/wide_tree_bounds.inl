@@ -145,6 +145,7 @@ LENDULET_FORCE_INLINE void store_steps(int8_t* to, const float* x, F centre, F s
     store_as_bytes(to, steps);
 }
 
+// By quads, as the boxes are written: wider loads of what has just been written in quads would have to wait for it.
 template <class F>
 void bounds_of_group(const BoxGroup& group, Bounds6& out) {
     Quad lower[2], upper[2];
