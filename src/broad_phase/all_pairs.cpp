@@ -1,22 +1,12 @@
 #include "broad_phase/all_pairs.h"
 
+#include "broad_phase/all_pairs_scan.h"
+
 namespace lendulet {
 
 namespace {
 
-// Appends the pairs of a box with those of a set from place `first` on, by half blocks: with ten boxes a third of the
-// lanes of whole blocks would be empty or done.
-void pairs_from(const BoxSet& set, const WideBox& box, uint32_t box_index, int first, PairList& out) {
-    const int count = set.count();
-    uint32_t skipped = (1u << first % 4) - 1;
-    for (int i = first & ~3; i < count; i += 4, skipped = 0) {
-        uint32_t hits = overlaps_half(set.blocks.data()[i / block_size], i % block_size, box) & ~skipped;
-        if (hits == 0) continue;
-        if (count - i < 4) hits &= (1u << (count - i)) - 1;
-        PairWriter writer(out, 4);
-        while (hits) writer.write(box_index, set.index[i + take_bit(hits)]);
-    }
-}
+ScannedBoxes scanned(const BoxSet& set) { return {set.blocks.data(), set.index.data(), set.count()}; }
 
 }  // namespace
 
@@ -31,12 +21,10 @@ void AllPairs::set_moving(const BroadBox* boxes, int count, TaskPool*) {
 
 void AllPairs::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
     constexpr int grain = 64;
+    const AllPairsScan scan = all_pairs_scan();
     chunks_.search(tasks, moving_.count(), grain, out, [&](int begin, int end, PairList& list) {
-        for (int i = begin; i < end; ++i) {
-            WideBox box = spread_lane(moving_.blocks[i / block_size], i % block_size);
-            pairs_from(moving_, box, moving_.index[i], i + 1, list);
-            pairs_from(fixed_, box, moving_.index[i], 0, list);
-        }
+        PairRoom room(list);
+        scan(scanned(moving_), scanned(fixed_), begin, end, room);
     });
 }
 

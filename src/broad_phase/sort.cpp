@@ -25,11 +25,67 @@ void sort_by_digits(Array<uint64_t>& keys, Array<uint64_t>& swap, int first_bit)
     }
 }
 
+// A handful: each key's place is the number of those below it. Without a branch that depends on a key.
+void sort_by_rank(Array<uint64_t>& keys) {
+    constexpr size_t most = 32;
+    const size_t n = keys.size();
+    uint64_t old[most];
+    uint32_t rank[most];
+    for (size_t i = 0; i < n; ++i) {
+        const uint64_t key = old[i] = keys[i];
+        uint32_t below = 0;
+        for (size_t j = 0; j < i; ++j) {
+            const bool less = old[j] <= key;
+            below += less;
+            rank[j] += !less;
+        }
+        rank[i] = below;
+    }
+    for (size_t i = 0; i < n; ++i) keys[rank[i]] = old[i];
+}
+
+// Keys that are spread evenly, by their highest bits that differ into about as many buckets as keys and each to its
+// place from there. False where too many share a bucket; nothing has changed then.
+bool sort_by_buckets(Array<uint64_t>& keys, Array<uint64_t>& swap) {
+    constexpr int most_bits = 12, most_together = 24;
+    uint64_t low = keys[0], high = keys[0];
+    for (uint64_t key : keys) {
+        low = key < low ? key : low;
+        high = key > high ? key : high;
+    }
+    const int bits = std::min(most_bits, 63 - __builtin_clzll(keys.size()));
+    const int span = high > low ? 64 - __builtin_clzll(high - low) : 1;
+    const int shift = span > bits ? span - bits : 0;
+    uint32_t place[1 << most_bits] = {};
+    const size_t buckets = static_cast<size_t>((high - low) >> shift) + 1;
+    for (uint64_t key : keys) ++place[(key - low) >> shift];
+    uint32_t begin = 0, most = 0;
+    for (size_t b = 0; b < buckets; ++b) {
+        most = std::max(most, place[b]);
+        begin += std::exchange(place[b], begin);
+    }
+    if (most > most_together) return false;
+    swap.resize_unset(keys.size());
+    for (uint64_t key : keys) swap[place[(key - low) >> shift]++] = key;
+    keys.swap(swap);
+    uint64_t* sorted = keys.data();
+    for (size_t i = 1; i < keys.size(); ++i) {
+        const uint64_t key = sorted[i];
+        size_t at = i;
+        for (; at > 0 && sorted[at - 1] > key; --at) sorted[at] = sorted[at - 1];
+        sorted[at] = key;
+    }
+    return true;
+}
+
 }  // namespace
 
 void sort_keys(Array<uint64_t>& keys, Array<uint64_t>& swap, int first_bit) {
     // Measured: below, clearing and summing the histograms costs more.
+    constexpr size_t ranks_pay_to = 32, buckets_pay_to = 8192;
     constexpr size_t small_digits_pay_from = 64, large_digits_pay_from = 1500;
+    if (keys.size() <= ranks_pay_to) return sort_by_rank(keys);
+    if (keys.size() <= buckets_pay_to && sort_by_buckets(keys, swap)) return;
     if (keys.size() < small_digits_pay_from) {
         std::sort(keys.begin(), keys.end());  // order: total, keys that are equal cannot be told apart
         return;

@@ -4,23 +4,25 @@
 // wide_tree_set.h how they keep it from frame to frame, wide_tree_pairs.inl and wide_tree_changes.inl how pairs are
 // found, wide_tree_batch.inl how many boxes are searched together.
 //
+// Beside the boxes of a group stand their sides as bytes (coarse_boxes.h): 384 of them, which searches look at first.
 // Groups, not single boxes, are what is tested against the tree: a box of the acceptance set (half extents .25 to .5,
-// centres in a cube of side 1.5 n^(1/3)) costs 6.6 tests of eight lanes, or 3.7 of sixteen, from n = 1000 to 100 000
-// within 10 %: two thirds of them in its own group, the rest shared by the groups next to it. A test is six comparisons
-// of 32 or 64 bytes.
+// centres in a cube of side 1.5 n^(1/3)) takes one test of bytes against its own group and some against those next to
+// it. A test is six comparisons of 64 bytes with AVX-512, twelve of 32 or 24 of 16 without; it lets a tenth more boxes
+// pass than overlap, and what passes is compared exactly, box by box.
 //
-// How far from what the machine can do (10 000 boxes, one Zen 5 core at about 4 GHz, eight lanes, measured): at two
-// comparisons a cycle the tests alone would take 5 ns a box; the search takes about 14 ns, the rest being the packing
-// of the boxes that reach into a neighbour, the ends of loops and the writing of pairs. A build takes about 9 ns: it
-// reads the 32 bytes of a box twice and the 16 of its centre seven times. Both together are 23 ns a box.
+// How far from what the machine can do (10 000 boxes, one core of an Emerald Rapids at 2.85 GHz, sixteen lanes,
+// measured): building and searching takes 39 ns a box, 110 cycles. Comparisons of bytes are one a cycle, so its own
+// group costs a box six cycles; the rest of the search is the boxes that reach into neighbours, the ends of loops and
+// the writing of pairs. A build reads the 32 bytes of a box twice and writes them once, and the 16 of its centre are
+// read seven times.
 //
 // A frame in which 5 % of the boxes move. A changed box is near two groups of those of any number of boxes (1.7 to 2.0
-// from 1000 to 100 000), and is tested against both as it was and as it is: 16 tests of sixteen lanes, 96 comparisons
-// of 64 bytes, over 3 kB of groups, beside its 32 bytes of before and after and the tests of one to five blocks above.
-// At one comparison a cycle that alone is 27 ns for each that moves, 5 % of building and searching anew; all of it
-// takes 90 to 110 ns up to 10 000 boxes and 170 at 100 000, where groups and changed boxes come from the outer caches:
-// a sixth to a quarter of building and searching anew. More than half is the search, a fifth the gathering of the
-// changed boxes, a tenth each the sorting of what begins and ends and the bounds.
+// from 1000 to 100 000), and is tested against both once, as the box around what it was and is: 12 comparisons of 64
+// bytes over 900 bytes, then one or two boxes of 32 in both states, beside its own 64 bytes of before and after and the
+// tests of one to five blocks above. The comparisons alone would be 12 cycles, the 200 instructions of the search about
+// 50; it takes 130, and all of a changed box 230 (80 ns) at 1000 boxes, 310 at 10 000, 450 at 100 000, where groups and
+// changed boxes come from the outer caches, and 650 at a million. More than half is the search, the rest the gathering
+// of the changed boxes, their bounds and steps before and after the search, and the sorting of what begins and ends.
 #pragma once
 
 #include "base/memory.h"

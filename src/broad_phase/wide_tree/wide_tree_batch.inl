@@ -4,8 +4,6 @@
 // A search of one box alone is a handful of loops of one to three rounds, and a machine that guesses wrong at the end
 // of each waits for longer than it tests; nor can it fetch a group while it waits for another.
 
-using Quad = Wide<float, 4>;
-
 template <class F>
 LENDULET_FORCE_INLINE Spread<F> spread(const BroadBox& box) {
     Spread<F> all;

@@ -1,5 +1,7 @@
 // Part of wide_tree_kernels.inl: filling groups, bounds of groups and blocks, and the test all searches are made of.
 
+using Quad = Wide<float, 4>;
+
 // A box with each bound in all lanes.
 template <class F>
 struct Spread {
@@ -7,7 +9,7 @@ struct Spread {
 };
 // All lanes the same, bit by bit: splat() adds zero, which is an instruction more, for it makes +0 of -0.
 template <class F>
-LENDULET_FORCE_INLINE F repeat(const float& x) {
+LENDULET_FORCE_INLINE F repeat(float x) {
     using Integers = Wide<int32_t, lanes_of<F>>;
     int32_t bits;
     std::memcpy(&bits, &x, sizeof bits);
@@ -24,8 +26,13 @@ LENDULET_FORCE_INLINE Spread<F> spread(const Bounds6& bounds) {
     return spread<F>(bounds.at, 1);
 }
 template <class F>
-LENDULET_FORCE_INLINE Spread<F> spread_lane(const BoxGroup& group, int lane) {
-    return spread<F>(group.bounds[0] + lane, group_lanes);
+LENDULET_FORCE_INLINE Spread<F> spread(Quad lower, Quad upper) {
+    Spread<F> box;
+    for (int d = 0; d < 3; ++d) {
+        box.at[d] = repeat<F>(lower[d]);
+        box.at[3 + d] = repeat<F>(upper[d]);
+    }
+    return box;
 }
 
 // Which of the boxes at bounds, bounds + stride ... overlap; intervals are closed, so touching counts.
@@ -45,14 +52,43 @@ LENDULET_FORCE_INLINE uint32_t overlaps(const BoundsBlock& block, const Spread<F
     for (int i = 0; i < block_lanes; i += lanes_of<F>) lanes |= overlaps<F>(block.bounds[0] + i, block_lanes, box) << i;
     return lanes;
 }
-// From lane `first` on, which is a multiple of the vector's width; lanes below are 0.
+// The steps of a box in the frame of a group, each four times: lower x, y, z, nothing, upper x, y, z, nothing.
+struct Steps {
+    alignas(16) uint32_t at[8];
+};
+LENDULET_FORCE_INLINE Steps spread_steps(Bytes16 bytes) {
+    Steps steps;
+    store_fourfold<8>(steps.at, bytes);
+    asm("" : "+m"(steps));  // to be loaded into all lanes, which is free: from registers it takes shuffles
+    return steps;
+}
+
+// The boxes of a group, from lane `first` to `end`, that may overlap: all that do, and some that come near. `first` is
+// a multiple of the vector's width; lanes before it are 0.
 template <class F>
-LENDULET_FORCE_INLINE uint64_t overlaps(const BoxGroup& group, int first, int end, const Spread<F>& box) {
+LENDULET_FORCE_INLINE uint64_t may_overlap(const CoarseBoxes& group, int first, int end, const uint32_t* steps,
+                                           int stride) {
+    using B = BytesOf<F>;
     uint64_t lanes = 0;
-    for (int i = first; i < end; i += lanes_of<F>) {
-        lanes |= uint64_t{overlaps<F>(group.bounds[0] + i, group_lanes, box)} << i;
+    for (int i = first; i < end; i += bytes_of<B>) {
+        AllAtMost<B> hit;
+        for (int d = 0; d < 3; ++d) {
+            hit.require(load_bytes<B>(group.bounds[d] + i), repeat_word<B>(steps[(4 + d) * stride]));
+            hit.require(repeat_word<B>(steps[d * stride]), load_bytes<B>(group.bounds[3 + d] + i));
+        }
+        lanes |= hit.bits() << i;
     }
     return lanes;
+}
+template <class F>
+LENDULET_FORCE_INLINE uint64_t may_overlap(const CoarseBoxes& group, Bytes16 steps) {
+    return may_overlap<F>(group, 0, group_lanes, spread_steps(steps).at, 1);
+}
+
+// Exactly; intervals are closed.
+LENDULET_FORCE_INLINE bool meet(const BroadBox& a, const BroadBox& b) {
+    auto quad = [](const float* p) { return load_wide<Quad>(p); };
+    return three_at_most(quad(a.lower), quad(b.upper), quad(b.lower), quad(a.upper));  // the fourth is no bound
 }
 
 // The smallest or largest lane of a vector.
@@ -93,58 +129,99 @@ LENDULET_FORCE_INLINE void bounds_of_lanes(const float* bounds, int stride, Boun
     }
 }
 template <class F>
-void bounds_of_group(const BoxGroup& group, Bounds6& out) {
-    bounds_of_lanes<F>(group.bounds[0], group_lanes, out);
-}
-template <class F>
 void bounds_of_block(const BoundsBlock& block, Bounds6& out) {
     bounds_of_lanes<F>(block.bounds[0], block_lanes, out);
 }
 
-LENDULET_FORCE_INLINE void set_box(BoxGroup& group, int lane, const BroadBox& box) {
-    for (int d = 0; d < 3; ++d) {
-        group.bounds[d][lane] = box.lower[d];
-        group.bounds[3 + d][lane] = box.upper[d];
+// The steps of sixteen numbers.
+template <class F>
+LENDULET_FORCE_INLINE void store_steps(int8_t* to, const float* x, F centre, F scale) {
+    const F first = splat<F>(first_step), last = splat<F>(last_step);
+    F steps[16 / lanes_of<F>];
+    for (int i = 0; i < 16 / lanes_of<F>; ++i) {
+        F side = load_wide<F>(x + i * lanes_of<F>);
+        steps[i] = minimum(maximum((side - centre) * scale, first), last);
     }
-    group.index[lane] = box.index;
+    store_as_bytes(to, steps);
 }
 
-// Reads the boxes through their places and turns rows to lanes.
+// By quads, as the boxes are written: wider loads of what has just been written in quads would have to wait for it.
 template <class F>
-void fill_group(BoxGroup& group, const BroadBox* boxes, const uint32_t* place, int count, Bounds6& bounds) {
+void bounds_of_group(const BoxGroup& group, Bounds6& out) {
+    Quad lower[2], upper[2];
+    for (int i = 0; i < group_lanes; i += 2) {
+        for (int k = 0; k < 2; ++k) {
+            const Quad low = load_wide<Quad>(group.boxes[i + k].lower),
+                       high = load_wide<Quad>(group.boxes[i + k].upper);
+            lower[k] = i ? minimum(low, lower[k]) : low;
+            upper[k] = i ? maximum(high, upper[k]) : high;
+        }
+    }
+    const Quad low = minimum(lower[0], lower[1]), high = maximum(upper[0], upper[1]);
+    for (int d = 0; d < 3; ++d) {
+        out.at[d] = low[d];
+        out.at[3 + d] = high[d];
+    }
+}
+
+// Empties the lanes from `first` on.
+template <class F>
+LENDULET_FORCE_INLINE void clear_boxes(BoxGroup& group, int first) {
+    constexpr int row = static_cast<int>(sizeof(BroadBox) / sizeof(float));
+    constexpr int stored = lanes_of < F >> row ? lanes_of<F> : row;
+    alignas(64) float empty[stored];
+    for (int i = 0; i < stored; ++i) empty[i] = i % row < row / 2 ? infinity : -infinity;
+    for (int i = first; i < group_lanes; ++i) {
+        const bool whole = (i * row) % stored == 0;
+        std::memcpy(static_cast<void*>(&group.boxes[i]), empty, whole ? sizeof empty : sizeof(BroadBox));
+        if (whole) i += stored / row - 1;
+    }
+}
+
+LENDULET_FORCE_INLINE void clear_steps_from(CoarseBoxes& coarse, int first) {
+    const Bytes16 counts{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const Bytes16 kept = counts < repeat_byte(first % 16);
+    for (int k = 0; k < bound_count; ++k) {
+        const Bytes16 empty = repeat_byte(k < 3 ? 127 : -128);
+        for (int i = first & ~15; i < group_lanes; i += 16) {
+            Bytes16 steps = empty;
+            if (i < first) {
+                std::memcpy(&steps, coarse.bounds[k] + i, sizeof steps);
+                steps = (steps & kept) | (empty & ~kept);
+            }
+            std::memcpy(coarse.bounds[k] + i, &steps, sizeof steps);
+        }
+    }
+}
+
+// Copies boxes through their places, and turns rows to lanes for their steps.
+template <class F>
+void fill_group(BoxGroup& group, CoarseBoxes& coarse, const BroadBox* boxes, const uint32_t* place, int count,
+                Bounds6& bounds) {
     constexpr int width = lanes_of<F>;
     constexpr int row = static_cast<int>(sizeof(BroadBox) / sizeof(float)), upper = row / 2;
-    static_assert(row == 8);
+    for (int i = 0; i < count; ++i) group.boxes[i] = boxes[place[i]];
+    clear_boxes<F>(group, count);
+    const int end = (count + 15) & ~15;
+    alignas(64) float sides[bound_count][group_lanes];
     F all[bound_count];
     for (int k = 0; k < bound_count; ++k) all[k] = splat<F>(k < 3 ? infinity : -infinity);
-    int i = 0;
-    for (; i + width <= count; i += width) {
+    for (int i = 0; i < end; i += width) {
         F low[4], high[4];
-        int32_t at[width];
-        std::memcpy(at, place + i, sizeof at);
-        gather4<width>(floats_of(boxes), at, row, 0, low);
-        gather4<width>(floats_of(boxes), at, row, upper, high);
+        load4<width>(floats_of(group.boxes), i, row, 0, low);
+        load4<width>(floats_of(group.boxes), i, row, upper, high);
         for (int d = 0; d < 3; ++d) {
-            store_wide(group.bounds[d] + i, low[d]);
-            store_wide(group.bounds[3 + d] + i, high[d]);
+            store_wide(sides[d] + i, low[d]);
+            store_wide(sides[3 + d] + i, high[d]);
             all[d] = minimum(low[d], all[d]);
             all[3 + d] = maximum(high[d], all[3 + d]);
         }
-        std::memcpy(group.index + i, &low[3], sizeof low[3]);
-    }
-    if (i < count) {  // the last group of a tree
-        for (int k = 0; k < bound_count; ++k) {
-            for (int j = i; j < i + width; ++j) group.bounds[k][j] = k < 3 ? infinity : -infinity;
-        }
-        for (int j = i; j < count; ++j) set_box(group, j, boxes[place[j]]);
-        for (int k = 0; k < bound_count; ++k) {
-            F last = load_wide<F>(group.bounds[k] + i);
-            all[k] = k < 3 ? minimum(last, all[k]) : maximum(last, all[k]);
-        }
-        i += width;
-    }
-    for (; i < group_lanes; ++i) {
-        for (int k = 0; k < bound_count; ++k) group.bounds[k][i] = k < 3 ? infinity : -infinity;
     }
     for (int k = 0; k < bound_count; ++k) bounds.at[k] = k < 3 ? reduce(all[k], Lower{}) : reduce(all[k], Upper{});
+    set_frame(coarse, bounds);
+    for (int k = 0; k < bound_count; ++k) {
+        const F centre = repeat<F>(coarse.centre[k % 3]), scale = repeat<F>(coarse.scale[k % 3]);
+        for (int i = 0; i < end; i += 16) store_steps<F>(coarse.bounds[k] + i, sides[k] + i, centre, scale);
+    }
+    if (count < group_lanes) clear_steps_from(coarse, count);
 }

@@ -1,11 +1,6 @@
 // Part of wide_tree_kernels.inl: pairs that begin and end. Which do follows from the boxes of before and after alone,
-// so no list of pairs is kept. While the changes are searched, the lane of a changed box holds the box around both.
-
-LENDULET_FORCE_INLINE bool meet(const BroadBox& a, const BroadBox& b) {
-    auto quad = [](const float* p) { return load_wide<Quad>(p); };
-    auto hit = (quad(a.lower) <= quad(b.upper)) & (quad(b.lower) <= quad(a.upper));
-    return (mask_bits(hit) & 7) == 7;  // the fourth lane is no bound
-}
+// so no list of pairs is kept. While the changes are searched, the steps of a changed box are those of the box around
+// both; its two states stand in its row.
 
 // Up to 64 changes of the moving set and the tree they are searched in.
 template <class F>
@@ -25,6 +20,9 @@ public:
             auto quad = [](const float* p) { return load_wide<Quad>(p); };
             this->set(i, minimum(quad(change.after.lower), quad(change.before.lower)),
                       maximum(quad(change.after.upper), quad(change.before.upper)));
+            const uint32_t lane = changes_.lanes[first + i];
+            this->rows_[i].index = in_moving_ ? lane / group_lanes : no_box;  // where the box itself is
+            this->rows_[i].unused = lane % group_lanes;
         }
         this->run(count);
     }
@@ -32,61 +30,78 @@ public:
 private:
     friend Base;
 
-    // What a change meets in a group: boxes that did not change and were or are met, not both; changed ones that have
-    // to be looked at; all that are met now.
-    struct Hits {
-        uint64_t differ, changed, now;
-        uint32_t entry;
-    };
+    // What may meet: an entry of a list, and below it a lane of that group.
+    using Candidate = uint64_t;
+    static constexpr int lane_bits = 6, most_candidates = 512;
+    static_assert(group_lanes == 1 << lane_bits);
+
+    // Groups beyond so many are likely not to be near, and are asked for so many entries ahead.
+    static constexpr int most_near = 512, ahead = 8;
 
     void look(const List& list) {
-        Hits hits[List::most];
-        int n = 0;
+        Candidate found[most_candidates + group_lanes + 2];
+        Candidate* next = found;
+        const CoarseBoxes* groups = this->tree_.coarse;
+        const bool far = this->tree_.group_count > most_near;
         for (int i = 0; i < list.count; ++i) {
-            const int row = Base::row_of(list.at[i]) + first_, g = Base::node_of(list.at[i]);
-            const WideTreeChange& change = changes_.rows[row];
-            const Spread<F> before = spread<F>(change.before), after = spread<F>(change.after);
-            const BoxGroup& group = this->tree_.groups[g];
-            uint64_t was = 0, is = 0;
-            for (int k = 0; k < group_lanes; k += lanes_of<F>) {
-                was |= uint64_t{overlaps<F>(group.bounds[0] + k, group_lanes, before)} << k;
-                is |= uint64_t{overlaps<F>(group.bounds[0] + k, group_lanes, after)} << k;
+            const uint32_t entry = list.at[i];
+            if (far && i + ahead < list.count)
+                prefetch<sizeof(CoarseBoxes) / 64>(&groups[Base::node_of(list.at[i + ahead])]);
+            const BroadBox& row = this->rows_[Base::row_of(entry)];
+            const auto g = static_cast<uint32_t>(Base::node_of(entry));
+            uint64_t lanes = may_overlap<F>(groups[g], steps_of(groups[g], row));
+            lanes &= ~(uint64_t{row.index == g} << row.unused);
+            const Candidate base = uint64_t{entry} << lane_bits;
+            // Mostly there are one or two or none; a loop would end where the machine does not expect it.
+            auto note = [&] {
+                *next = base + static_cast<uint64_t>(__builtin_ctzll(lanes | uint64_t{1} << 63));
+                next += lanes != 0;
+                lanes &= lanes - 1;
+            };
+            note();
+            note();
+            while (lanes) note();
+            if (next - found > most_candidates) {
+                compare(found, next);
+                next = found;
             }
-            uint64_t changed = in_moving_ ? changes_.changed[g] : 0;
-            hits[n] = {(was ^ is) & ~changed, (was | is) & changed & later(row, g), is, list.at[i]};
-            n += (hits[n].differ | hits[n].changed) != 0;
         }
-        for (int i = 0; i < n; ++i) write(hits[i]);
+        compare(found, next);
     }
 
-    // Of two changed boxes the one in the earlier lane looks at the other.
-    uint64_t later(int row, int g) const {
-        const int lane = static_cast<int>(changes_.lanes[row]), own = lane / group_lanes;
-        return g > own ? all_lanes : g < own ? 0 : all_lanes << lane % group_lanes << 1;
-    }
-
-    LENDULET_FORCE_INLINE void write(const Hits& hits) {
-        if (out_.end - out_.next < static_cast<ptrdiff_t>(PairList::most_at_once)) out_.full(out_);
-        const int g = Base::node_of(hits.entry);
-        const BoxGroup& group = this->tree_.groups[g];
-        const WideTreeChange& mine = changes_.rows[Base::row_of(hits.entry) + first_];
-        BoxPair* next = out_.next;
-        auto note = [&](uint32_t a, uint32_t b, bool begins) {
-            bool in_order = (a < b) == begins;  // begun pairs ascend, ended ones descend
-            return in_order ? BoxPair{a, b} : BoxPair{b, a};
-        };
-        for (uint64_t lanes = hits.differ; lanes;) {
-            int i = take_lane(lanes);
-            *next++ = note(mine.after.index, group.index[i], hits.now >> i & 1);
+    void compare(const Candidate* found, const Candidate* end) {
+        const BoxGroup* groups = this->tree_.groups;
+        while (found < end) {
+            if (out_.end - out_.next < static_cast<ptrdiff_t>(PairList::most_at_once)) out_.full(out_);
+            const Candidate* stop = end - found < out_.end - out_.next ? end : found + (out_.end - out_.next);
+            BoxPair* next = out_.next;
+            for (; found < stop; ++found) {
+                if (end - found > ahead) {
+                    const auto soon = static_cast<uint32_t>(found[ahead] >> lane_bits);
+                    prefetch(&groups[Base::node_of(soon)].boxes[found[ahead] % group_lanes]);
+                }
+                const auto entry = static_cast<uint32_t>(*found >> lane_bits);
+                const uint32_t i = *found % group_lanes, g = static_cast<uint32_t>(Base::node_of(entry));
+                const WideTreeChange& mine = changes_.rows[first_ + Base::row_of(entry)];
+                const BroadBox *before = &groups[g].boxes[i], *after = before;
+                if (in_moving_ && changes_.changed[g] >> i & 1) {
+                    // Of two changed boxes the one in the earlier lane looks.
+                    const BroadBox& own = this->rows_[Base::row_of(entry)];
+                    if (g * group_lanes + i < own.index * group_lanes + own.unused) continue;
+                    const int earlier = __builtin_popcountll(changes_.changed[g] & ~(all_lanes << i));
+                    const WideTreeChange& other = changes_.rows[changes_.first[g] + static_cast<uint32_t>(earlier)];
+                    before = &other.before;
+                    after = &other.after;
+                }
+                const bool was = meet(mine.before, *before), is = meet(mine.after, *after);
+                const uint32_t a = mine.after.index, b = after->index;
+                // Begun pairs ascend, ended ones descend; which it is cannot be foreseen.
+                const uint32_t swapped = (a ^ b) & (0u - static_cast<uint32_t>((a < b) != is));
+                *next = {a ^ swapped, b ^ swapped};
+                next += was != is;
+            }
+            out_.next = next;
         }
-        for (uint64_t lanes = hits.changed; lanes;) {
-            int i = take_lane(lanes), earlier = __builtin_popcountll(changes_.changed[g] & ~(all_lanes << i));
-            const WideTreeChange& other = changes_.rows[changes_.first[g] + static_cast<uint32_t>(earlier)];
-            bool was = meet(mine.before, other.before), is = meet(mine.after, other.after);
-            *next = note(mine.after.index, other.after.index, is);
-            next += was != is;
-        }
-        out_.next = next;
     }
 
     const WideTreeChanges& changes_;
@@ -99,10 +114,9 @@ template <class F>
 void find_changes(const WideTreeView& moving, const WideTreeView& fixed, const WideTreeChanges& changes, int begin,
                   int end, PairStream& out) {
     constexpr int most = ChangeSearch<F>::most_rows;
-    ChangeSearch<F> in_moving(moving, changes, true, out), in_fixed(fixed, changes, false, out);
-    for (int i = begin; i < end; i += most) {
-        int count = end - i < most ? end - i : most;
-        in_moving.search(i, count);
-        in_fixed.search(i, count);
+    for (const WideTreeView* tree : {&moving, &fixed}) {
+        if (tree->group_count == 0) continue;
+        ChangeSearch<F> search(*tree, changes, tree == &moving, out);
+        for (int i = begin; i < end; i += most) search.search(i, end - i < most ? end - i : most);
     }
 }

@@ -8,19 +8,20 @@
 #include "broad_phase/box.h"
 #include "broad_phase/pair_chunks.h"
 #include "broad_phase/query.h"
+#include "broad_phase/wide_tree/coarse_boxes.h"
 
 namespace lendulet {
 
-inline constexpr int group_lanes = 64;  // boxes, the bits of a word
 inline constexpr int block_lanes = 16;  // groups or blocks, the lanes of the widest vector
-inline constexpr int bound_count = 6;   // lower x, y, z, upper x, y, z
 
-// A leaf: 64 boxes side by side. Lanes without a box have lower = +infinity and upper = -infinity: nothing finite
-// overlaps them, and they leave all bounds alone.
+// A leaf: 64 boxes that lie close together. Lanes without a box have lower = +infinity and upper = -infinity: nothing
+// finite overlaps them, and they leave all bounds alone. Searches look at their CoarseBoxes first.
 struct alignas(64) BoxGroup {
-    float bounds[bound_count][group_lanes];
-    uint32_t index[group_lanes];  // the caller's
+    BroadBox boxes[group_lanes];
 };
+inline void clear_box(BroadBox& box) {
+    box = {{infinity, infinity, infinity}, no_box, {-infinity, -infinity, -infinity}, 0};
+}
 
 // The bounds of 16 groups, or of 16 blocks of the level below; unused lanes as in a group.
 struct alignas(64) BoundsBlock {
@@ -32,6 +33,7 @@ struct alignas(64) BoundsBlock {
 struct WideTreeView {
     static constexpr int max_levels = 8;
     const BoxGroup* groups = nullptr;
+    const CoarseBoxes* coarse = nullptr;  // of each group
     const BoundsBlock* blocks = nullptr;
     int group_count = 0;
     int lanes = 0;  // used of all groups together: the last may be partly empty
@@ -39,17 +41,12 @@ struct WideTreeView {
     int first_block[max_levels] = {};
 };
 
-// The bounds of a box or a set of boxes.
-struct Bounds6 {
-    float at[bound_count];
-};
-
 struct alignas(64) WideTreeChange {
     BroadBox before, after;  // of the same index
 };
 
-// The boxes of the moving set that change between two frames, sorted by their lanes. While they are searched, their
-// lanes hold the box around before and after, and so do all bounds above.
+// The boxes of the moving set that change between two frames, sorted by their lanes. While they are searched, the
+// steps of their lanes are those of the box around before and after, and all bounds above hold both.
 struct WideTreeChanges {
     const uint64_t* changed = nullptr;     // of each group, the lanes that change
     const uint32_t* first = nullptr;       // of each group with such lanes, where its rows begin
@@ -66,7 +63,8 @@ struct IndexStream {
 struct WideTreeKernels {
     int width;
     // Copies boxes[place[i]], i < count, into a group and gives their bounds.
-    void (*fill)(BoxGroup& group, const BroadBox* boxes, const uint32_t* place, int count, Bounds6& bounds);
+    void (*fill)(BoxGroup& group, CoarseBoxes& coarse, const BroadBox* boxes, const uint32_t* place, int count,
+                 Bounds6& bounds);
     // The bounds of the boxes of a group, and of a block.
     void (*group_bounds)(const BoxGroup& group, Bounds6& bounds);
     void (*block_bounds)(const BoundsBlock& block, Bounds6& bounds);

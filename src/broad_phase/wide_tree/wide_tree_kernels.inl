@@ -1,9 +1,12 @@
 // The one source of the inner loops of the wide tree. Included by one unit per instruction set, which defines
 // LENDULET_KERNEL_SPACE: the namespace that keeps the copies apart, so that the linker can never give a unit the code
 // of a wider machine. F is the vector of the unit's width.
+#include "base/prefetch.h"
 #include "broad_phase/wide_tree/wide_tree_kernels.h"
+#include "math/wide/bytes.h"
 #include "math/wide/gather.h"
 #include "math/wide/mask.h"
+#include "math/wide/quads.h"
 
 namespace lendulet::LENDULET_KERNEL_SPACE {
 namespace {

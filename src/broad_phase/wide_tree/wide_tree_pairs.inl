@@ -1,86 +1,78 @@
 // Part of wide_tree_kernels.inl: all pairs. Groups are tested against groups in two steps. The first has no branch that
 // depends on a hit: it tests, and notes the hits of each box as the bits of a word. The second turns words into pairs.
 
-// Boxes of a group that matter to another, side by side, with room for one vector more.
-template <class F>
-struct Selection {
-    alignas(64) float bounds[bound_count][group_lanes + lanes_of<F>];
-    uint32_t index[group_lanes];
-    int count;
-    static constexpr int stride = group_lanes + lanes_of<F>;
-};
-
-// What one box hits.
+// What one box of a group may hit in another.
 struct Hits {
     uint64_t lanes;
-    uint32_t index;
+    int own;
 };
 
-LENDULET_FORCE_INLINE void write_pairs(PairStream& out, const Hits& hits, const uint32_t* others) {
+LENDULET_FORCE_INLINE void write_pairs(PairStream& out, const BroadBox& own, const BoxGroup& others, uint64_t lanes) {
     if (out.end - out.next < static_cast<ptrdiff_t>(PairList::most_at_once)) out.full(out);
     BoxPair* next = out.next;
-    uint64_t lanes = hits.lanes;
     do {
-        uint32_t other = others[take_lane(lanes)];
-        *next++ = hits.index < other ? BoxPair{hits.index, other} : BoxPair{other, hits.index};
+        const BroadBox& other = others.boxes[take_lane(lanes)];
+        *next = own.index < other.index ? BoxPair{own.index, other.index} : BoxPair{other.index, own.index};
+        next += meet(own, other);
     } while (lanes);
     out.next = next;
 }
 
 // Pairs within a group of which `used` lanes are in use.
 template <class F>
-LENDULET_FORCE_INLINE void pairs_within(const BoxGroup& group, int used, PairStream& out) {
+LENDULET_FORCE_INLINE void pairs_within(const BoxGroup& group, const CoarseBoxes& coarse, int used, PairStream& out) {
+    constexpr int width = bytes_of<BytesOf<F>>;
+    alignas(64) uint32_t steps[8][group_lanes];  // each step four times; as in Steps
+    for (int k = 0; k < bound_count; ++k) {
+        uint32_t* row = steps[k < 3 ? k : k + 1];
+        for (int i = 0; i < used; i += 16) store_fourfold<16>(row + i, load_bytes<Bytes16>(coarse.bounds[k] + i));
+    }
     Hits hits[group_lanes];
     int n = 0;
-    for (int first = 0; first < used; first += lanes_of<F>) {
-        int last = used - first < lanes_of<F> ? used : first + lanes_of<F>;
+    for (int first = 0; first < used; first += width) {
+        int last = used - first < width ? used : first + width;
         for (int i = first; i < last; ++i) {
-            uint64_t lanes = overlaps<F>(group, first, used, spread_lane<F>(group, i));
+            uint64_t lanes = may_overlap<F>(coarse, first, used, steps[0] + i, group_lanes);
             lanes &= all_lanes << i << 1;
-            hits[n] = {lanes, group.index[i]};
+            hits[n] = {lanes, i};
             n += lanes != 0;
         }
     }
-    for (int i = 0; i < n; ++i) write_pairs(out, hits[i], group.index);
+    for (int i = 0; i < n; ++i) write_pairs(out, group.boxes[hits[i].own], group, hits[i].lanes);
 }
 
-template <class F>
-LENDULET_FORCE_INLINE void select_boxes(const BoxGroup& group, const Spread<F>& near, Selection<F>& out) {
-    int n = 0;
-    for (int i = 0; i < group_lanes; i += lanes_of<F>) {
-        uint32_t bits = overlaps<F>(group.bounds[0] + i, group_lanes, near);
-        for (int k = 0; k < bound_count; ++k) {
-            store_packed<F>(out.bounds[k] + n, bits, load_wide<F>(group.bounds[k] + i));
-        }
-        for (; bits; bits &= bits - 1) out.index[n++] = group.index[i + __builtin_ctz(bits)];
-    }
-    out.count = n;
+// A group with its bounds in the block above.
+struct BoundedGroup {
+    const BoxGroup& boxes;
+    const CoarseBoxes& coarse;
+    Quad lower, upper;
+};
+LENDULET_FORCE_INLINE BoundedGroup bounded_group(const WideTreeView& tree, int group) {
+    const BoundsBlock& block = tree.blocks[tree.first_block[0] + group / block_lanes];
+    auto bound = [&](int k) { return block.bounds[k][group % block_lanes]; };
+    return {tree.groups[group], tree.coarse[group], Quad{bound(0), bound(1), bound(2), 0},
+            Quad{bound(3), bound(4), bound(5), 0}};
 }
 
-// Pairs between two groups with the bounds given.
+// Pairs between two groups.
 template <class F>
-LENDULET_FORCE_INLINE void pairs_between(const BoxGroup& a, const Spread<F>& bounds_a, const BoxGroup& b,
-                                         const Spread<F>& bounds_b, PairStream& out) {
-    uint64_t mine = overlaps<F>(a, 0, group_lanes, bounds_b);
-    if (mine == 0) return;
-    Selection<F> theirs;
-    select_boxes<F>(b, bounds_a, theirs);
-    if (theirs.count == 0) return;
+LENDULET_FORCE_INLINE void pairs_between(const BoundedGroup& a, const BoundedGroup& b, PairStream& out) {
+    uint64_t of_a = may_overlap<F>(a.coarse, steps_of(a.coarse, b.lower, b.upper));
+    if (of_a == 0) return;
+    uint64_t of_b = may_overlap<F>(b.coarse, steps_of(b.coarse, a.lower, a.upper));
+    if (of_b == 0) return;
+    const bool swap = __builtin_popcountll(of_b) < __builtin_popcountll(of_a);  // the fewer are tested one by one
+    const BoundedGroup &mine = swap ? b : a, &theirs = swap ? a : b;
+    uint64_t left = swap ? of_b : of_a, valid = swap ? of_a : of_b;
     Hits hits[group_lanes];
     int n = 0;
-    uint64_t valid = all_lanes >> (group_lanes - theirs.count);
-    while (mine) {
-        int i = take_lane(mine);
-        Spread<F> box = spread_lane<F>(a, i);
-        uint64_t lanes = 0;
-        for (int j = 0; j < theirs.count; j += lanes_of<F>) {
-            lanes |= uint64_t{overlaps<F>(theirs.bounds[0] + j, Selection<F>::stride, box)} << j;
-        }
-        lanes &= valid;
-        hits[n] = {lanes, a.index[i]};
+    while (left) {
+        int i = take_lane(left);
+        uint64_t lanes = may_overlap<F>(theirs.coarse, steps_of(theirs.coarse, mine.boxes.boxes[i])) & valid;
+        hits[n] = {lanes, i};
         n += lanes != 0;
     }
-    for (int i = 0; i < n; ++i) write_pairs(out, hits[i], theirs.index);
+    for (int i = 0; i < n; ++i) write_pairs(out, mine.boxes.boxes[hits[i].own], theirs.boxes, hits[i].lanes);
 }
 
 // visit(block, lanes) for every block of level 0 with groups from `first` on whose bounds overlap the box, in order.
@@ -118,22 +110,15 @@ LENDULET_FORCE_INLINE void visit_groups(const WideTreeView& tree, const Spread<F
 }
 
 template <class F>
-LENDULET_FORCE_INLINE Spread<F> bounds_in_block(const WideTreeView& tree, int group) {
-    const BoundsBlock& block = tree.blocks[tree.first_block[0] + group / block_lanes];
-    return spread<F>(block.bounds[0] + group % block_lanes, block_lanes);
-}
-
-template <class F>
 void find_pairs(const WideTreeView& moving, const WideTreeView& fixed, int begin, int end, PairStream& out) {
     for (int i = begin; i < end; ++i) {
-        const BoxGroup& group = moving.groups[i];
+        const BoundedGroup group = bounded_group(moving, i);
         int left = moving.lanes - i * group_lanes;
-        pairs_within<F>(group, left < group_lanes ? left : group_lanes, out);
-        Spread<F> bounds = bounds_in_block<F>(moving, i);
+        pairs_within<F>(group.boxes, group.coarse, left < group_lanes ? left : group_lanes, out);
+        const Spread<F> bounds = spread<F>(group.lower, group.upper);
         auto with = [&](const WideTreeView& tree, int first) {
-            visit_groups<F>(tree, bounds, first, [&](int other) {
-                pairs_between<F>(group, bounds, tree.groups[other], bounds_in_block<F>(tree, other), out);
-            });
+            visit_groups<F>(tree, bounds, first,
+                            [&](int other) { pairs_between<F>(group, bounded_group(tree, other), out); });
         };
         with(moving, i + 1);
         with(fixed, 0);

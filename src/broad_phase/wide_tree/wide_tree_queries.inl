@@ -2,13 +2,20 @@
 
 template <class F>
 void find_overlapping(const WideTreeView& tree, const Bounds6& bounds, IndexStream& out) {
-    Spread<F> box = spread<F>(bounds);
-    visit_groups<F>(tree, box, 0, [&](int g) {
+    const Quad lower{bounds.at[0], bounds.at[1], bounds.at[2], 0}, upper{bounds.at[3], bounds.at[4], bounds.at[5], 0};
+    BroadBox box;
+    store_wide(box.lower, lower);
+    store_wide(box.upper, upper);
+    visit_groups<F>(tree, spread<F>(bounds), 0, [&](int g) {
         const BoxGroup& group = tree.groups[g];
-        uint64_t lanes = overlaps<F>(group, 0, group_lanes, box);
+        uint64_t lanes = may_overlap<F>(tree.coarse[g], steps_of(tree.coarse[g], lower, upper));
         if (out.end - out.next < group_lanes) out.full(out);
         uint32_t* next = out.next;
-        while (lanes) *next++ = group.index[take_lane(lanes)];
+        while (lanes) {
+            const BroadBox& found = group.boxes[take_lane(lanes)];
+            *next = found.index;
+            next += meet(box, found);
+        }
         out.next = next;
     });
 }
@@ -44,17 +51,22 @@ private:
         Hits hits[List::most];
         int n = 0;
         for (int i = 0; i < list.count; ++i) {
-            const BoxGroup& group = this->tree_.groups[Base::node_of(list.at[i])];
-            uint64_t lanes = overlaps<F>(group, 0, group_lanes, spread<F>(this->rows_[Base::row_of(list.at[i])]));
+            const CoarseBoxes& coarse = this->tree_.coarse[Base::node_of(list.at[i])];
+            uint64_t lanes = may_overlap<F>(coarse, steps_of(coarse, this->rows_[Base::row_of(list.at[i])]));
             hits[n] = {lanes, list.at[i]};
             n += lanes != 0;
         }
         for (int i = 0; i < n; ++i) {
             if (out_.end - out_.next < static_cast<ptrdiff_t>(PairList::most_at_once)) out_.full(out_);
-            const uint32_t query = first_ + static_cast<uint32_t>(Base::row_of(hits[i].entry));
+            const int row = Base::row_of(hits[i].entry);
+            const uint32_t query = first_ + static_cast<uint32_t>(row);
             const BoxGroup& group = this->tree_.groups[Base::node_of(hits[i].entry)];
             BoxPair* next = out_.next;
-            for (uint64_t lanes = hits[i].lanes; lanes;) *next++ = {query, group.index[take_lane(lanes)]};
+            for (uint64_t lanes = hits[i].lanes; lanes;) {
+                const BroadBox& found = group.boxes[take_lane(lanes)];
+                *next = {query, found.index};
+                next += meet(this->rows_[row], found);
+            }
             out_.next = next;
         }
     }
@@ -72,27 +84,26 @@ void find_hits(const WideTreeView& tree, const BoxQuery* queries, int begin, int
 
 // The measure of a query for boxes side by side: when a cast enters them, how far off they are.
 template <class F, class Query>
-LENDULET_FORCE_INLINE F measure_lanes(const Query& query, const float* bounds, int stride) {
-    F lower[3], upper[3];
-    for (int d = 0; d < 3; ++d) {
-        lower[d] = load_wide<F>(bounds + d * stride);
-        upper[d] = load_wide<F>(bounds + (3 + d) * stride);
-    }
+LENDULET_FORCE_INLINE F measure_lanes(const Query& query, const F lower[3], const F upper[3]) {
     if constexpr (std::is_same_v<Query, BoxCast>) return cast_entry<F>(query, lower, upper);
     else return squared_distance<F>(query, lower, upper);
 }
 
 template <class F, class Query>
 LENDULET_FORCE_INLINE void offer_group(Query& query, const BoxGroup& group) {
+    constexpr int row = static_cast<int>(sizeof(BroadBox) / sizeof(float));
     for (int i = 0; i < group_lanes; i += lanes_of<F>) {
-        F at = measure_lanes<F>(query, group.bounds[0] + i, group_lanes);
+        F lower[4], upper[4];
+        load4<lanes_of<F>>(floats_of(group.boxes), i, row, 0, lower);
+        load4<lanes_of<F>>(floats_of(group.boxes), i, row, row / 2, upper);
+        F at = measure_lanes<F>(query, lower, upper);
         uint32_t lanes = lane_bits<F>(at_most(at, splat<F>(limit(query))));
         if (lanes == 0) continue;
         float each[lanes_of<F>];
         store_wide(each, at);
         for (; lanes; lanes &= lanes - 1) {
             int lane = __builtin_ctz(lanes);
-            query.offer(each[lane], group.index[i + lane]);
+            query.offer(each[lane], group.boxes[i + lane].index);
         }
     }
 }
@@ -119,7 +130,12 @@ void find_best(const WideTreeView& tree, Query& query) {
         float each[block_lanes];
         uint32_t lanes = 0;
         for (int i = 0; i < block_lanes; i += lanes_of<F>) {
-            F at = measure_lanes<F>(query, block.bounds[0] + i, block_lanes);
+            F lower[3], upper[3];
+            for (int d = 0; d < 3; ++d) {
+                lower[d] = load_wide<F>(block.bounds[d] + i);
+                upper[d] = load_wide<F>(block.bounds[3 + d] + i);
+            }
+            F at = measure_lanes<F>(query, lower, upper);
             store_wide(each + i, at);
             lanes |= lane_bits<F>(at_most(at, splat<F>(limit(query)))) << i;
         }

@@ -15,19 +15,32 @@ bool holds(const Bounds6& outer, const Bounds6& inner) {
     return yes;
 }
 
+// The steps of a lane are those of its box, or of none.
+bool steps_hold(const CoarseBoxes& coarse, size_t lane, const BroadBox& box, bool used) {
+    const Bytes16 steps = steps_of(coarse, box);
+    bool yes = true;
+    for (int d = 0; d < 3; ++d) {
+        yes &= coarse.bounds[d][lane] == (used ? steps[d] : 127);
+        yes &= coarse.bounds[3 + d][lane] == (used ? steps[4 + d] : -128);
+    }
+    return yes;
+}
+
 int blocks_for(int children) { return (children + block_lanes - 1) / block_lanes; }
 
 }  // namespace
 
 WideTreeSet::WideTreeSet(const Memory* memory, const WideTreeKernels& kernels) : kernels_(kernels), order_(memory) {
     auto give = [&](auto&... arrays) { (arrays.set_memory(memory), ...); };
-    give(groups_, blocks_, place_, unbounded_, unbounded_place_, lane_of_, home_, size_, changed_, is_touched_);
-    give(touched_, parents_, first_row_, rows_, row_lane_);
+    give(groups_, coarse_, blocks_, place_, unbounded_, unbounded_place_, lane_of_, home_, size_, changed_,
+         is_touched_);
+    give(touched_, parents_, shrunk_, first_row_, rows_, row_lane_);
 }
 
 WideTreeView WideTreeSet::view() const {
     WideTreeView view;
     view.groups = groups_.data();
+    view.coarse = coarse_.data();
     view.blocks = blocks_.data();
     view.group_count = groups_.count();
     view.lanes = place_.count();
@@ -44,6 +57,7 @@ void WideTreeSet::build(const BroadBox* boxes, int count, TaskPool* tasks) {
     for (uint32_t place : unbounded_place_) unbounded_.push_back(boxes[place]);
     int lanes = place_.count();
     groups_.resize_unset(static_cast<size_t>((lanes + group_lanes - 1) / group_lanes));
+    coarse_.resize_unset(groups_.size());
     plan_levels(0);
     fill_groups(boxes, tasks);
     built_size_ = size_sum_;
@@ -66,7 +80,8 @@ void WideTreeSet::fill_groups(const BroadBox* boxes, TaskPool* tasks) {
         for (int i = begin; i < end; ++i) {
             int first = i * group_lanes, n = lanes - first;
             Bounds6 bounds;
-            kernels_.fill(groups_[i], boxes, place_.data() + first, n < group_lanes ? n : group_lanes, bounds);
+            kernels_.fill(groups_[i], coarse_[i], boxes, place_.data() + first, n < group_lanes ? n : group_lanes,
+                          bounds);
             set_bounds(0, static_cast<uint32_t>(i), bounds);
             size_[i] = size_of(bounds);
         }
@@ -141,10 +156,8 @@ void WideTreeSet::boxes(Array<BroadPhaseBox>& out) const {
     }
     for (size_t lane = 0; lane < place_.size(); ++lane) {
         if (place_[lane] == no_box) continue;
-        const BoxGroup& group = groups_[lane / group_lanes];
-        Bounds6 b;
-        for (int k = 0; k < bound_count; ++k) b.at[k] = group.bounds[k][lane % group_lanes];
-        append(b, levels_ + 1, true, group.index[lane % group_lanes]);
+        const BroadBox& b = groups_[lane / group_lanes].boxes[lane % group_lanes];
+        append({{b.lower[0], b.lower[1], b.lower[2], b.upper[0], b.upper[1], b.upper[2]}}, levels_ + 1, true, b.index);
     }
 }
 
@@ -157,8 +170,10 @@ const char* WideTreeSet::check() const {
         for (size_t i = 0; i < group_lanes; ++i) {
             size_t lane = static_cast<size_t>(g) * group_lanes + i;
             bool used = lane < place_.size() && place_[lane] != no_box;
-            bool finite = groups_[g].bounds[0][i] <= groups_[g].bounds[3][i];
-            if (used != finite) return "a lane without a box is not empty, or the other way round";
+            const BroadBox& box = groups_[g].boxes[i];
+            if (used != (box.lower[0] <= box.upper[0]))
+                return "a lane without a box is not empty, or the other way round";
+            if (!steps_hold(coarse_[g], i, box, used)) return "the steps of a lane are not those of its box";
             if (used && mapped_ && lane_of_[place_[lane]] != lane) return "a place and its lane do not know each other";
             held += used;
         }
@@ -184,8 +199,8 @@ const char* WideTreeSet::check() const {
 size_t WideTreeSet::bytes() const {
     size_t sum = order_.bytes();
     auto add = [&](const auto&... arrays) { ((sum += arrays.bytes()), ...); };
-    add(groups_, blocks_, place_, unbounded_, unbounded_place_, lane_of_, home_, size_, changed_, is_touched_);
-    add(touched_, parents_, first_row_, rows_, row_lane_);
+    add(groups_, coarse_, blocks_, place_, unbounded_, unbounded_place_, lane_of_, home_, size_, changed_, is_touched_);
+    add(touched_, parents_, shrunk_, first_row_, rows_, row_lane_);
     return sum;
 }
 

@@ -44,8 +44,9 @@ public:
     uint32_t index_at(uint32_t place) const;
     // The lane of one place becomes the other's and the other way round.
     void swap_places(uint32_t a, uint32_t b);
-    // 2. Marks a bounded box that changes. False where it is unbounded: remove and insert it.
-    bool mark(uint32_t place);
+    // 2. Marks boxes that change, once. Appends those that are unbounded to `unbounded` instead: they are to be removed
+    // and inserted.
+    void mark(const uint32_t* places, int count, Array<uint32_t>& unbounded);
     // 3. Collects the marked boxes before and after, `boxes` being the new array. Appends the places of those that jump
     // or become another box to `jumped`: they are no longer marked, but to be removed and inserted.
     void gather(const BroadBox* boxes, Array<uint32_t>& jumped);
@@ -76,7 +77,7 @@ private:
     void set_bounds(int level, uint32_t child, const Bounds6& bounds);
     Bounds6 bounds_at(int level, uint32_t child) const;
     void raise_bounds();
-    void raise_touched();
+    void raise(const Array<uint32_t>& groups);
     void touch(uint32_t group);
     void sort_touched();
     void extend_bounds(int level, uint32_t child, const BroadBox& box);
@@ -87,6 +88,7 @@ private:
     int levels_ = 0, count_ = 0;
     int first_block_[WideTreeView::max_levels] = {}, blocks_at_[WideTreeView::max_levels] = {};
     Array<BoxGroup> groups_;
+    Array<CoarseBoxes> coarse_;  // of each group
     Array<BoundsBlock> blocks_;  // level 0 first
     Array<uint32_t> place_;      // of the box in each lane, its place in the caller's array; no_box: none
     Array<BroadBox> unbounded_;
@@ -100,7 +102,7 @@ private:
     // What changes need; made by the first after a build.
     bool mapped_ = false;
     Array<uint32_t> lane_of_;       // of each place
-    Array<Bounds6> home_;           // of each group, what its boxes stay in
+    Array<BroadBox> home_;          // of each group, what its boxes stay in
     int built_groups_ = 0;          // the others are loose
     int loose_used_ = group_lanes;  // lanes of the last loose group
     int64_t wear_ = 0;
@@ -109,6 +111,7 @@ private:
     Array<uint64_t> changed_;  // of each group, the lanes that change: all zero between frames
     Array<uint8_t> is_touched_;
     Array<uint32_t> touched_, parents_;  // groups with a changed or removed box
+    Array<uint32_t> shrunk_;             // those of them that may have become smaller
     Array<uint32_t> first_row_;          // of each touched group
     Array<WideTreeChange> rows_;
     Array<uint32_t> row_lane_;

@@ -21,9 +21,8 @@ void WideTree::update(TaskPool& tasks, const BroadBox* boxes, int count, const u
     const int before = moving_.count(), common = std::min(before, count);
     if (count < before) adopt_removed(boxes, count, changed, changed_count);
     special_.clear();
-    for (int i = 0; i < changed_count && changed[i] < static_cast<uint32_t>(common); ++i) {
-        if (!moving_.mark(changed[i])) special_.push_back(changed[i]);
-    }
+    const uint32_t* known = std::lower_bound(changed, changed + changed_count, static_cast<uint32_t>(common));
+    moving_.mark(changed, static_cast<int>(known - changed), special_);
     moving_.gather(boxes, special_);
     const int singles = special_.count() + (before - common) + (count - common);
     // Two queries of a single box (about 160 ns each) cost as much as eight boxes in two searches and a build.
@@ -112,14 +111,18 @@ void WideTree::replace(TaskPool& tasks, const BroadBox* boxes, int count, Array<
 
 // A single box that was taken out and put in again may have ended pairs and begun them anew: those cancel.
 void WideTree::sort_changes(Array<BoxPair>& begun, Array<BoxPair>& ended, bool cancel) {
-    begun_.clear();
-    ended_.clear();
-    begun_.reserve(changes_.size());
-    ended_.reserve(changes_.size());
-    for (const BoxPair& pair : changes_) {
-        if (pair.a < pair.b) begun_.push_back(key_of(pair));
-        else ended_.push_back(key_of({pair.b, pair.a}));
+    begun_.resize_unset(changes_.size());
+    ended_.resize_unset(changes_.size());
+    size_t begins = 0, ends = 0;
+    for (const BoxPair& pair : changes_) {  // which of both it is cannot be foreseen: written to both lists
+        const bool is = pair.a < pair.b;
+        begun_.data()[begins] = key_of(pair);
+        ended_.data()[ends] = key_of({pair.b, pair.a});
+        begins += is;
+        ends += !is;
     }
+    begun_.resize_unset(begins);
+    ended_.resize_unset(ends);
     sort_keys(begun_, swap_);
     sort_keys(ended_, swap_);
     if (!cancel) removed_.clear();

@@ -1,0 +1,78 @@
+// The boxes of a group a second time, each side as one byte: a step of a frame around them. Sixty-four boxes are six
+// cache lines and as few comparisons, and what does not pass there needs no look at the boxes themselves.
+//
+// The step of x, trunc(clamp((x - centre) * scale)), never falls as x grows, wherever x is: a difference, a product
+// with a positive number and both roundings keep order. So boxes that overlap also do in steps, in the frame of any
+// group, far outside of it too, where all steps are one; what passes in steps is then compared exactly.
+#pragma once
+
+#include <cfloat>
+
+#include "broad_phase/box.h"
+#include "math/wide/bytes.h"
+
+namespace lendulet {
+
+inline constexpr int group_lanes = 64;  // boxes, the bits of a word
+inline constexpr int bound_count = 6;   // lower x, y, z, upper x, y, z
+
+// Lanes without a box have lower = 127 and upper = -128, which no step reaches: nothing overlaps them.
+struct alignas(64) CoarseBoxes {
+    int8_t bounds[bound_count][group_lanes];
+    float centre[4], scale[4];  // the fourth takes what stands behind a box's sides, and gives no step
+};
+
+inline constexpr float first_step = -128.0f, last_step = 126.0f;
+
+// The bounds of a box or a set of boxes.
+struct Bounds6 {
+    float at[bound_count];
+};
+
+// Steps as fine as they can be inside the bounds. Finite and positive scales, so that nothing becomes NaN.
+LENDULET_FORCE_INLINE void set_frame(CoarseBoxes& coarse, const Bounds6& bounds) {
+    using Quad = Wide<float, 4>;
+    const Quad lower{bounds.at[0], bounds.at[1], bounds.at[2], 0}, upper{bounds.at[3], bounds.at[4], bounds.at[5], 0};
+    const Quad steps = splat<Quad>(250.0f), least = splat<Quad>(1e-30f), most = splat<Quad>(FLT_MAX);
+    const Quad half = splat<Quad>(0.5f), zero = splat<Quad>(0.0f);
+    Quad scale = steps / minimum(maximum(upper - lower, least), most), centre = half * lower + half * upper;
+    centre = select(absolute(centre) <= most, centre, zero);  // of no boxes it is not a number
+    centre[3] = 1.0f;  // an index read as a float may be denormal, and multiplying that is slow
+    scale[3] = 0.0f;
+    store_wide(coarse.centre, centre);
+    store_wide(coarse.scale, scale);
+}
+
+LENDULET_FORCE_INLINE Wide<float, 4> steps_of(Wide<float, 4> sides, Wide<float, 4> centre, Wide<float, 4> scale) {
+    using Quad = Wide<float, 4>;
+    return minimum(maximum((sides - centre) * scale, splat<Quad>(first_step)), splat<Quad>(last_step));
+}
+
+// The steps of a box: lower x, y, z, nothing, upper x, y, z, nothing, and those again.
+LENDULET_FORCE_INLINE Bytes16 steps_of(const CoarseBoxes& frame, Wide<float, 4> lower, Wide<float, 4> upper) {
+    using Quad = Wide<float, 4>;
+    const Quad centre = load_wide<Quad>(frame.centre), scale = load_wide<Quad>(frame.scale);
+    const Quad low = steps_of(lower, centre, scale), high = steps_of(upper, centre, scale);
+    return to_bytes(low, high, low, high);
+}
+LENDULET_FORCE_INLINE Bytes16 steps_of(const CoarseBoxes& frame, const BroadBox& box) {
+    using Quad = Wide<float, 4>;
+    return steps_of(frame, load_wide<Quad>(box.lower), load_wide<Quad>(box.upper));
+}
+
+LENDULET_FORCE_INLINE void set_steps(CoarseBoxes& coarse, uint32_t lane, const BroadBox& box) {
+    const Bytes16 steps = steps_of(coarse, box);
+    for (int d = 0; d < 3; ++d) {
+        coarse.bounds[d][lane] = steps[d];
+        coarse.bounds[3 + d][lane] = steps[4 + d];
+    }
+}
+
+inline void clear_steps(CoarseBoxes& coarse, uint32_t lane) {
+    for (int d = 0; d < 3; ++d) {
+        coarse.bounds[d][lane] = 127;
+        coarse.bounds[3 + d][lane] = -128;
+    }
+}
+
+}  // namespace lendulet
