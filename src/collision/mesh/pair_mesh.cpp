@@ -25,13 +25,31 @@ constexpr float level = MeshQuery::level;
 // Cosine from which the shape's own face is the reference for an edge of the mesh.
 constexpr float flat = 0.998f;
 
-// The shape's face and farthest core point towards a plane: neighbours in one plane share them.
+// A triangle that the shape's face is to be cut by.
+struct FaceJob {
+    Triangle t;
+    Vec3 lowest;  // the core's point along the normal
+    int face;     // of MeshCollision::faces; none: only its rim might touch
+    int found;    // its number in the filter
+    int lane;     // of the batch
+    uint8_t beyond;
+};
+constexpr int no_face = -1;
+
 struct MeshCollision : MeshQuery {
     using MeshQuery::MeshQuery;
+
+    static constexpr int most_jobs = OverTriangleBatch::capacity;
+    int job_count = 0;
+    FaceJob jobs[most_jobs];
+    OverTriangleBatch batch;
+
+    // The shape's face and farthest core point towards a plane: neighbours in one plane share them.
     Vec3 facing{};  // the plane's normal
-    ShapeFace face;
-    int32_t face_number = -1;  // of a box or hull
     Vec3 lowest;
+    int face = no_face;        // the last of `faces`
+    int32_t face_number = -1;  // its number, of a box or hull
+    ShapeFace faces[most_jobs];
 
     Footing footing;
     // Triangles that the shape is beside: their edges are left until it is known what else it stands on.
@@ -47,17 +65,14 @@ constexpr float leeway_of_size = 0.08f, leeway_of_margin = 2.0f, most_leeway = 0
 // Wider than rounding, where none are kept: whether a triangle is near is the filter's to say.
 constexpr float least_leeway = 0.01f;
 
-// visit(triangle index, what the filter found, its number there) for those that may come within `limit` of the core, in
-// the order of the mesh.
+// visit(triangles, what the filter found of them) for those that may come within `limit` of the core, in the order of
+// the mesh.
 template <class Visit>
 void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&& visit) {
     MeshFilter filter(q, limit);
     auto look_through = [&](const uint32_t* triangles, int count) {
         filter.test(triangles, count);
-        for (uint64_t live = filter.live(); live != 0; live &= live - 1) {
-            const int i = std::countr_zero(live);
-            visit(triangles[i], filter, i);
-        }
+        visit(triangles, filter);
     };
     const Vec3 lower = q.position + q.lower, upper = q.position + q.upper;
     if (kept != nullptr && !kept->hold(lower, upper)) {
@@ -142,6 +157,17 @@ void sphere_triangle(const MeshQuery& q, const Triangle& t, TriangleContact& out
     add_point(nearest.point + (0.5f * separation) * normal, separation, 0, out);
 }
 
+void collide_ball(const MeshQuery& q, const uint32_t* triangles, const MeshFilter& found, MeshManifolds& manifolds) {
+    const bool one_sided = q.surface.one_sided();
+    for (uint64_t live = found.live(); live != 0; live &= live - 1) {
+        Triangle t = make_triangle(q.surface, triangles[std::countr_zero(live)], q.position, q.centre);
+        if (t.from_behind && one_sided) continue;
+        TriangleContact contact;
+        sphere_triangle(q, t, contact);
+        manifolds.add(contact);
+    }
+}
+
 // --- faces
 
 // Which face of a box or hull looks along a direction; -1: of other shapes, whose faces turn with the direction.
@@ -154,41 +180,38 @@ int32_t number_of_face(const Geometry& g, Vec3 direction) {
 }
 
 void look_at(MeshCollision& q, Vec3 normal, const MeshFilter& found, int i) {
-    if (q.facing == normal) return;
+    if (q.face != no_face && q.facing == normal) return;
     q.facing = normal;
     Vec3 down = rotate_inverse(q.turn, -normal);
     q.lowest = rotate(q.turn, found.has_lowest() ? found.lowest(i) : support_core(q.shape, down));
     const int32_t number = number_of_face(q.shape, down);
     if (number >= 0 && number == q.face_number) return;
     q.face_number = number;
-    q.face.face = best_face(q.shape, down);
-    transform_face({{}, q.turn}, q.face.face);
-    q.face.update();
-}
-
-bool is_over(const TriangleSides& sides, Vec3 p) {
-    for (int i = 0; i < 3; ++i) {
-        if (dot(sides.out[i], p) > sides.offset[i]) return false;
-    }
-    return true;
+    ShapeFace& face = q.faces[++q.face];
+    face.face = best_face(q.shape, down);
+    transform_face({{}, q.turn}, face.face);
+    face.update();
 }
 
 // The part of the shape's face over the triangle, and its lowest point where that is over it and below the face.
-void clip_to_triangle(const MeshCollision& q, const Triangle& t, const TriangleSides& sides, FaceOverTriangle& out) {
-    clip_over_triangle(q.face, t, sides, q.surface, q.pair.margin + q.shape.rounding, out);
-    const float height = dot(q.lowest - t.vertices[0], t.normal);
+void read_over(const MeshCollision& q, const FaceJob& job, FaceOverTriangle& out) {
+    const Triangle& t = job.t;
+    const Face& face = q.faces[job.face].face;
+    q.batch.read(job.lane, t, face, q.surface, out);
+    const float height = q.batch.lowest_height[job.lane];
     float deepest = 3e38f;
     for (int i = 0; i < out.count; ++i) deepest = minimum(deepest, out.points[i].height);
-    if (height < deepest - 10.0f * level * q.size && is_over(sides, q.lowest)) {
-        const uint32_t id = point_id(face_feature(0), face_feature(q.face.face.id));
-        const Vec3 foot = q.lowest - height * t.normal;
+    if (height < deepest - 10.0f * level * q.size && q.batch.lowest_over(job.lane)) {
+        const uint32_t id = point_id(face_feature(0), face_feature(face.id));
+        const Vec3 foot = job.lowest - height * t.normal;
         out.points[out.count++] = {foot.x, foot.y, foot.z, height, id};
     }
 }
 
-void face_contact(const MeshCollision& q, const Triangle& t, const FaceOverTriangle& over, TriangleContact& out) {
+void face_contact(const MeshCollision& q, const FaceJob& job, const FaceOverTriangle& over, TriangleContact& out) {
+    const Triangle& t = job.t;
     float radius = q.shape.rounding;
-    start(q, t, t.normal, true, radius + q.face.face.extra_radius, 1.0f, out);
+    start(q, t, t.normal, true, radius + q.faces[job.face].face.extra_radius, 1.0f, out);
     for (int i = 0; i < over.count && i < max_clipped_points; ++i) {
         const FaceOverTriangle::Point& p = over.points[i];
         add_point(p.foot() + (0.5f * (p.height - radius)) * t.normal, p.height - radius, p.id, out);
@@ -199,8 +222,9 @@ void face_contact(const MeshCollision& q, const Triangle& t, const FaceOverTrian
 // of the core is over the triangle. Overlapping, take a segment from a lowest point p to the centre: leaving the
 // triangle by the side over edge i takes at least the distance of that edge from the plane of the segment and the
 // edge's direction, and the whole core needs at least as much as a segment in it.
-bool is_shortest(const MeshCollision& q, const Triangle& t, const FaceOverTriangle& over) {
-    float lowest = dot(t.normal, q.lowest - t.vertices[0]), limit = lowest + level * q.size;
+bool is_shortest(const MeshCollision& q, const FaceJob& job, const FaceOverTriangle& over) {
+    const Triangle& t = job.t;
+    float lowest = q.batch.lowest_height[job.lane], limit = lowest + level * q.size;
     Vec3 p{};
     float count = 0.0f;
     for (int i = 0; i < over.count; ++i) {
@@ -316,47 +340,81 @@ bool rim_contact(const MeshQuery& q, const Triangle& t, const ConvexDistance& ne
     return overlapping && closed && neighbour_pushes(q, t, edges);
 }
 
-// Whether only the rim of a triangle might touch the shape, which is beside it: then it is noted for later, or left out
-// where no edge of it can touch.
-bool is_left_for_later(MeshCollision& q, uint32_t index, const MeshFilter& found, int i) {
+// Whether only the rim of a triangle might touch the shape, which is beside it.
+bool is_beside(const MeshCollision& q, uint32_t index, const MeshFilter& found, int i) {
     if (!found.has_lowest() || found.is_apart(i) || found.is_behind(i) || !found.is_beside(i)) return false;
     const uint8_t touching = q.surface.convex_edges(index);
-    if ((touching & q.surface.sharp_edges(index)) != 0 || q.beside_count == MeshCollision::most_beside) return false;
-    const uint8_t beyond = found.edges_beyond(i);
-    q.footing.note(q, index, false, beyond);
-    if (touching == 0) return true;
-    q.beyond[q.beside_count] = beyond;
-    q.beside[q.beside_count++] = index;
-    return true;
+    return (touching & q.surface.sharp_edges(index)) == 0;
 }
 
-// What triangle `index` gives, number i of those that the filter found.
-void convex_triangle(MeshCollision& q, const Triangle& t, const MeshFilter& found, int i, TriangleContact& out) {
-    const bool apart = found.is_apart(i);  // though not from its plane
-    look_at(q, t.normal, found, i);
+void leave_for_later(MeshCollision& q, const FaceJob& job) {
+    q.beyond[q.beside_count] = job.beyond;
+    q.beside[q.beside_count++] = job.t.index;
+}
+
+// What a triangle gives whose face is cut.
+void convex_triangle(MeshCollision& q, const FaceJob& job, const MeshFilter& found, TriangleContact& out) {
+    const Triangle& t = job.t;
+    const bool apart = found.is_apart(job.found);  // though not from its plane
     float limit = q.pair.margin + q.shape.rounding;
-    float height = dot(t.normal, q.lowest - t.vertices[0]);
+    float height = q.batch.lowest_height[job.lane];
     if (height > limit) return;
-    const TriangleSides sides(t);
-    const uint8_t beyond = found.has_lowest() ? found.edges_beyond(i) : beyond_edges(q, t, sides, q.lowest);
-    q.footing.note(q, t.index, t.from_behind, beyond);
+    q.footing.note(q, t.index, t.from_behind, job.beyond);
     FaceOverTriangle over;
-    clip_to_triangle(q, t, sides, over);
+    read_over(q, job, over);
     // A face within a flat or hollow part can touch with its own normal only, and so can the part of one within a
     // gently rolling surface that the shape is over. Overlapping from behind, the way out may be across an edge.
     const bool gentle = (t.touching & t.sharp) == 0, over_face = over.count > 0;
     bool sure =
         (t.touching == 0 || (gentle && !apart && over_face)) && (height >= 0.0f || !t.from_behind || t.bent == 0);
-    if (sure || is_shortest(q, t, over)) return face_contact(q, t, over, out);
+    if (sure || is_shortest(q, job, over)) return face_contact(q, job, over, out);
     if (apart) return;
-    if (gentle && !over_face && q.beside_count < MeshCollision::most_beside) {
-        q.beyond[q.beside_count] = beyond;
-        q.beside[q.beside_count++] = t.index;
-        return;
-    }
+    if (gentle && !over_face && q.beside_count < MeshCollision::most_beside) return leave_for_later(q, job);
     ConvexDistance nearest = distance_to(q, t, limit);
     if (nearest.distance > limit || rim_contact(q, t, nearest, out)) return;
-    face_contact(q, t, over, out);
+    face_contact(q, job, over, out);
+}
+
+// Cuts the faces of the jobs that wait, and adds what their triangles give.
+void finish_jobs(MeshCollision& q, const MeshFilter& found, MeshManifolds& manifolds) {
+    if (q.batch.count > 0) q.settings.clip(q.batch);
+    for (int k = 0; k < q.job_count; ++k) {
+        FaceJob& job = q.jobs[k];
+        if (job.face == no_face) {
+            q.footing.note(q, job.t.index, false, job.beyond);
+            if (job.t.touching != 0) leave_for_later(q, job);
+            continue;
+        }
+        if (!found.has_lowest()) job.beyond = q.batch.beyond(job.lane);
+        TriangleContact contact;
+        convex_triangle(q, job, found, contact);
+        manifolds.add(contact);
+    }
+    q.job_count = 0;
+    q.batch.clear();
+    if (q.face > 0) q.faces[0] = q.faces[q.face];
+    q.face = minimum(q.face, 0);
+}
+
+void collide_faces(MeshCollision& q, const uint32_t* triangles, const MeshFilter& found, MeshManifolds& manifolds) {
+    const bool one_sided = q.surface.one_sided();
+    for (uint64_t live = found.live(); live != 0; live &= live - 1) {
+        const int i = std::countr_zero(live);
+        if (one_sided && found.is_behind(i)) continue;
+        if (q.job_count == MeshCollision::most_jobs) finish_jobs(q, found, manifolds);
+        FaceJob& job = q.jobs[q.job_count++];
+        job.t = make_triangle(q.surface, triangles[i], q.position, q.centre);
+        job.found = i;
+        job.face = no_face;
+        if (found.has_lowest()) job.beyond = found.edges_beyond(i);
+        if (q.beside_count + q.job_count <= MeshCollision::most_beside && is_beside(q, triangles[i], found, i)) continue;
+        look_at(q, job.t.normal, found, i);
+        job.lowest = q.lowest;
+        job.face = q.face;
+        job.lane = q.batch.count;
+        q.batch.add(job.t, q.faces[q.face], q.lowest);
+    }
+    finish_jobs(q, found, manifolds);
 }
 
 // What the shape is beside, once all that it is over is known.
@@ -373,16 +431,12 @@ void beside_triangle(const MeshCollision& q, int i, TriangleContact& out) {
 int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings, MeshCandidates* kept, Manifold* out,
                         int capacity) {
     MeshCollision q(pair, settings);
+    q.batch.limit = pair.margin + q.shape.rounding, q.batch.level = level * q.size;
+    q.batch.clear();
     MeshManifolds manifolds(10.0f * level * q.size);
-    const bool ball = pair.b->kind == GeometryKind::point, one_sided = q.surface.one_sided();
-    for_each_near(q, pair.margin + q.shape.rounding, kept, [&](uint32_t index, const MeshFilter& found, int i) {
-        if (!ball && is_left_for_later(q, index, found, i)) return;
-        Triangle t = make_triangle(q.surface, index, q.position, q.centre);
-        if (t.from_behind && one_sided) return;
-        TriangleContact contact;
-        if (ball) sphere_triangle(q, t, contact);
-        else convex_triangle(q, t, found, i, contact);
-        manifolds.add(contact);
+    for_each_near(q, q.batch.limit, kept, [&](const uint32_t* triangles, const MeshFilter& found) {
+        if (pair.b->kind == GeometryKind::point) collide_ball(q, triangles, found, manifolds);
+        else collide_faces(q, triangles, found, manifolds);
     });
     for (int i = 0; i < q.beside_count; ++i) {
         TriangleContact contact;
@@ -403,12 +457,15 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
 bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& settings) {
     const MeshQuery q(pair, settings);
     bool touching = false;
-    for_each_near(q, q.shape.rounding, nullptr, [&](uint32_t index, const MeshFilter& found, int i) {
-        if (touching || found.is_apart(i)) return;
-        Triangle t = make_triangle(q.surface, index, q.position, q.centre);
-        float radius = q.shape.rounding;
-        touching = pair.b->kind == GeometryKind::point ? length(nearest_on_triangle(t.vertices, {}).point) <= radius
-                                                       : distance_to(q, t, radius).distance <= radius;
+    for_each_near(q, q.shape.rounding, nullptr, [&](const uint32_t* triangles, const MeshFilter& found) {
+        for (uint64_t live = found.live(); live != 0 && !touching; live &= live - 1) {
+            const int i = std::countr_zero(live);
+            if (found.is_apart(i)) continue;
+            Triangle t = make_triangle(q.surface, triangles[i], q.position, q.centre);
+            float radius = q.shape.rounding;
+            touching = pair.b->kind == GeometryKind::point ? length(nearest_on_triangle(t.vertices, {}).point) <= radius
+                                                           : distance_to(q, t, radius).distance <= radius;
+        }
     });
     return touching;
 }

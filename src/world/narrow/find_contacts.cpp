@@ -313,7 +313,10 @@ private:
         }
     }
 
-    CollideSettings settings() const { return {world_.config.simplex, world_.narrow_kernels.filter_triangles}; }
+    CollideSettings settings() const {
+        const NarrowKernels& kernels = world_.narrow_kernels;
+        return {world_.config.simplex, kernels.filter_triangles, kernels.clip_over_triangles};
+    }
 
     WorldData& world_;
     NarrowScratch& scratch_;

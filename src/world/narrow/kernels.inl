@@ -17,6 +17,8 @@ namespace {
 
 #include "collision/mesh/filter.inl"
 
+#include "collision/mesh/over_triangle.inl"
+
 #include "world/narrow/recycle.inl"
 
 template <int W>
@@ -27,7 +29,8 @@ constexpr NarrowKernels make_narrow_kernels() {
             collide_boxes<W>,
             collide_segments<W>,
             collide_box_balls<W>,
-            filter_triangles<(W < 4 ? 4 : W)>};
+            filter_triangles<(W < 4 ? 4 : W)>,
+            clip_over_triangles<(W < 4 ? 4 : W)>};
 }
 
 }  // namespace
