@@ -36,10 +36,10 @@ void Footing::note(const MeshQuery& q, uint32_t triangle, bool from_behind, uint
 Footing::Noted Footing::look_up(const MeshQuery& q, uint32_t index) const {
     for (int i = 0; i < count_; ++i)
         if (noted_[i].index == index) return noted_[i];
-    Triangle t = make_triangle(q.surface, index, q.position, q.centre);
+    const Triangle t = q.triangle(index);
     return {index,
             {q.surface.vertex(index, 0), q.surface.vertex(index, 1), q.surface.vertex(index, 2)},
-            beyond_edges(q, t, TriangleSides(t), q.lowest_along(t.normal)),
+            beyond_edges(q, t, TriangleSides(t), support_core(q.shape, -t.normal)),
             t.from_behind};
 }
 

@@ -3,7 +3,6 @@
 #include <bit>
 #include <cstring>
 
-#include "collision/mesh/filter.h"
 #include "math/wide/wide.h"
 
 namespace lendulet {
@@ -47,8 +46,7 @@ bool is_wide(const Face& face) { return face.count >= 2 && face.count <= OverTri
 
 }  // namespace
 
-void ShapeFace::update() {
-    size = 0.0f;
+ShapeFace::ShapeFace(const Geometry& shape, Vec3 direction) : face(best_face(shape, direction)), size(0.0f) {
     for (int k = 0; is_wide(face) && k < face.count; ++k)
         size = maximum(size, length(face.vertices[next_of(k, face.count)] - face.vertices[k]));
 }
@@ -62,19 +60,18 @@ TriangleSides::TriangleSides(const Triangle& t) {
     }
 }
 
-void OverTriangleBatch::add(const Triangle& t, const ShapeFace& f, Vec3 low) {
-    const int i = count++;
-    for (int k = 0; k < 3; ++k) {
-        vertex[k][0][i] = t.vertices[k].x, vertex[k][1][i] = t.vertices[k].y, vertex[k][2][i] = t.vertices[k].z;
-    }
-    normal[0][i] = t.normal.x, normal[1][i] = t.normal.y, normal[2][i] = t.normal.z;
-    turned[i] = t.from_behind ? -1.0f : 1.0f;
-    lowest[0][i] = low.x, lowest[1][i] = low.y, lowest[2][i] = low.z;
+void OverTriangleBatch::begin(const MeshFilterBatch& left, int from) {
+    triangles = &left, first = from, corners = 0;
+    count = left.live - from < capacity ? left.live - from : capacity;
+    for (float& n : corner_count) n = 0.0f;
+}
+
+void OverTriangleBatch::set_face(int i, const ShapeFace& f) {
     const Face& face = f.face;
-    const int n = is_wide(face) ? face.count : 0;
-    corner_count[i] = static_cast<float>(n);
-    if (n == 0) return;
+    if (!is_wide(face)) return;
+    const int n = face.count;
     if (n > corners) corners = n;
+    corner_count[i] = static_cast<float>(n);
     face_size[i] = f.size;
     face_normal[0][i] = face.normal.x, face_normal[1][i] = face.normal.y, face_normal[2][i] = face.normal.z;
     for (int k = 0; k <= n; ++k) {

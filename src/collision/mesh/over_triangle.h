@@ -6,16 +6,17 @@
 #include <cstdint>
 
 #include "collision/clip.h"
+#include "collision/mesh/filter.h"
 #include "collision/mesh/triangle.h"
 
 namespace lendulet {
 
-// A face of the core in the mesh's axes, relative to the shape's position.
+// A face of the core.
 struct ShapeFace {
     Face face;
-    float size;  // of its longest edge, m; after update()
+    float size;  // of its longest edge, m; of faces that are cut W at a time
 
-    void update();
+    ShapeFace(const Geometry& shape, Vec3 direction);
 };
 
 // A triangle's sides: a point p is outside side i by dot(out[i], p) - offset[i].
@@ -37,7 +38,7 @@ struct FaceOverTriangle {
     Point points[max_clipped_points];
 };
 
-// Triangles side by side, each with the face that looks at it and the core's lowest point along its normal, mesh axes.
+// Triangles side by side, each with the face that looks at it; in the axes of contacts, relative to the shape's position.
 struct OverTriangleBatch {
     static constexpr int capacity = 16;  // whole blocks of the widest lanes
     static constexpr int most_corners = 8;
@@ -46,14 +47,12 @@ struct OverTriangleBatch {
     static constexpr int first_covered = 2 * most_corners, points = first_covered + 3, lowest_is_over = points,
                          first_beyond = points + 1;
 
-    int count;
-    int corners;  // the most that a face has; faces of more are left to clip_face()
-    float limit;  // points higher than that over the triangle are none
-    float level;  // lowest points that far within a side are within it
-    float vertex[3][3][capacity], normal[3][capacity];  // by corner and component; towards the shape
-    float turned[capacity];                             // -1: the corners run clockwise about the normal, else 1
-    float lowest[3][capacity];
-    // The face: as many corners as there are, and then the first again.
+    const MeshFilterBatch* triangles;
+    int first, count;  // of those left there
+    int corners;       // the most that a face has; faces of more are left to clip_face()
+    float limit;       // points higher than that over the triangle are none
+    float level;       // lowest points that far within a side are within it
+    // The face: as many corners as there are, and then the first again. No corners, no points.
     float corner_count[capacity], face_size[capacity], face_normal[3][capacity];
     float corner[most_corners + 1][3][capacity];
 
@@ -64,15 +63,12 @@ struct OverTriangleBatch {
     float point[points][3][capacity], height[points][capacity];  // feet and heights, where there are points
     float side[first_covered][capacity];                         // which the edge crosses there, or -1: its own end
 
-    void clear() {
-        count = corners = 0;
-        for (float& n : corner_count) n = 0.0f;  // lanes that are not used give nothing
-    }
-    // Puts in one more, number `count`.
-    void add(const Triangle& t, const ShapeFace& face, Vec3 lowest);
+    // For up to `capacity` triangles from number `from` of those left on.
+    void begin(const MeshFilterBatch& left, int from);
+    void set_face(int i, const ShapeFace& face);
     bool lowest_over(int i) const { return (bits[i] >> lowest_is_over & 1) != 0; }
     uint8_t beyond(int i) const { return static_cast<uint8_t>(bits[i] >> first_beyond & 7); }
-    // What it found of number i. A corner of the shape has the same name over every triangle, so that it keeps it while
+    // What it found of number i, which is `t`. A corner of the shape has the same name over every triangle, so that it keeps it while
     // it slides.
     void read(int i, const Triangle& t, const Face& face, const TriangleSurface& surface, FaceOverTriangle& out) const;
 };

@@ -7,10 +7,8 @@ constexpr float overhang = 2e-4f;
 // Sine of the angle of a face with the triangle's normal below which it is seen from the side and covers no corner.
 constexpr float edge_on = 1e-3f;
 
-constexpr int lanes_room = OverTriangleBatch::capacity;
-
-template <class F>
-LENDULET_FORCE_INLINE Vec3T<F> load(const float (&rows)[3][lanes_room], int first) {
+template <class F, int room>
+LENDULET_FORCE_INLINE Vec3T<F> load(const float (&rows)[3][room], int first) {
     return {load_wide<F>(rows[0] + first), load_wide<F>(rows[1] + first), load_wide<F>(rows[2] + first)};
 }
 
@@ -27,9 +25,13 @@ struct Block {
     I bits{};
 
     LENDULET_FORCE_INLINE Block(OverTriangleBatch& batch, int lane) : b(batch), first(lane) {
-        for (int k = 0; k < 3; ++k) vertex[k] = load<F>(b.vertex[k], first);
-        normal = load<F>(b.normal, first);
-        const F turned = load_wide<F>(b.turned + first);
+        const MeshFilterBatch& near = *b.triangles;
+        const int from = b.first + first;
+        for (int k = 0; k < 3; ++k) vertex[k] = load<F>(near.p[k], from);
+        normal = load<F>(near.normal, from);
+        const F none{}, one = splat<F>(1.0f);
+        const I flags = __builtin_convertvector(load_wide<F>(near.flags + from), I);
+        const F turned = select((flags & static_cast<int32_t>(MeshFilterBatch::behind)) != 0, none - one, one);
         reach = F{};
         for (int k = 0; k < 3; ++k) {
             const V across = turned * cross(vertex[(k + 1) % 3] - vertex[k], normal);
@@ -46,7 +48,7 @@ struct Block {
     }
 
     LENDULET_FORCE_INLINE void place_lowest() {
-        const V p = load<F>(b.lowest, first);
+        const V p = load<F>(b.triangles->lowest, b.first + first);
         const F height = dot(normal, p - vertex[0]), zero{};
         store_wide(b.lowest_height + first, height);
         const F slack = splat<F>(b.level) + splat<F>(half_gentle_tangent) * maximum(zero, -height);

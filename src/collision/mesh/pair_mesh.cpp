@@ -4,7 +4,8 @@
 //
 // Faces come first: clipping the shape's face by the triangle often proves that the triangle's normal is the direction
 // of the shortest way out; only edges that can touch need GJK and EPA.
-#include <bit>
+#include <cstddef>
+#include <new>
 
 #include "collision/mesh/candidates.h"
 #include "collision/mesh/filter.h"
@@ -25,35 +26,26 @@ constexpr float level = MeshQuery::level;
 // Cosine from which the shape's own face is the reference for an edge of the mesh.
 constexpr float flat = 0.998f;
 
-// A triangle that the shape's face is to be cut by.
-struct FaceJob {
-    Triangle t;
-    Vec3 lowest;  // the core's point along the normal
-    int face;     // of MeshCollision::faces; none: only its rim might touch
-    int found;    // its number in the filter
-    int lane;     // of the batch
-    uint8_t beyond;
-};
 constexpr int no_face = -1;
 
 struct MeshCollision : MeshQuery {
     using MeshQuery::MeshQuery;
 
     static constexpr int most_jobs = OverTriangleBatch::capacity;
-    int job_count = 0;
-    FaceJob jobs[most_jobs];
     OverTriangleBatch batch;
+    int face_of[most_jobs];  // the face that each triangle of the batch is looked at by; none: only its rim might touch
 
-    // The shape's face and farthest core point towards a plane: neighbours in one plane share them.
+    // Faces of the shape: triangles of one plane share them, and so do those that one face of a box or hull looks at.
     Vec3 facing{};  // the plane's normal
-    Vec3 lowest;
-    int face = no_face;        // the last of `faces`
+    int face = no_face;        // the last one
     int32_t face_number = -1;  // its number, of a box or hull
-    ShapeFace faces[most_jobs];
+    alignas(ShapeFace) std::byte faces[(most_jobs + 1) * sizeof(ShapeFace)];
+    ShapeFace& face_at(int i) { return reinterpret_cast<ShapeFace*>(faces)[i]; }
+    const ShapeFace& face_at(int i) const { return reinterpret_cast<const ShapeFace*>(faces)[i]; }
 
     Footing footing;
     // Triangles that the shape is beside: their edges are left until it is known what else it stands on.
-    static constexpr int most_beside = 32;
+    static constexpr int most_beside = 48;
     int beside_count = 0;
     uint32_t beside[most_beside];
     uint8_t beyond[most_beside];  // their edges
@@ -96,7 +88,7 @@ void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&
 
 void start(const MeshQuery& q, const Triangle& t, Vec3 normal, bool face, float radius, float follow,
            TriangleContact& out) {
-    out.normal = normal;
+    out.normal = out.front = normal;
     out.face = face;
     out.radius = radius;
     out.follow = follow;
@@ -125,7 +117,7 @@ bool is_nearer_across(const MeshQuery& q, const Triangle& t, uint8_t edges, Vec3
         if ((edges >> i & 1) == 0) continue;
         int32_t across = q.surface.neighbour(t.index, i);
         if (across < 0) continue;
-        Triangle n = make_triangle(q.surface, static_cast<uint32_t>(across), q.position, q.centre);
+        const Triangle n = q.triangle(static_cast<uint32_t>(across));
         if (n.from_behind != t.from_behind) continue;
         int shared = 0;
         while (shared < 2 && q.surface.neighbour(n.index, shared) != static_cast<int32_t>(t.index)) ++shared;
@@ -157,61 +149,65 @@ void sphere_triangle(const MeshQuery& q, const Triangle& t, TriangleContact& out
     add_point(nearest.point + (0.5f * separation) * normal, separation, 0, out);
 }
 
+// Number i of what the filter left, of which it knows all places.
+Triangle left_triangle(const MeshQuery& q, const uint32_t* triangles, const MeshFilter& found, int i) {
+    Triangle t;
+    for (int k = 0; k < 3; ++k) t.vertices[k] = found.corner(i, k);
+    t.normal = found.normal(i);
+    t.from_behind = found.is_behind(i);
+    t.name(q.surface, triangles[found.number(i)]);
+    return t;
+}
+
 void collide_ball(const MeshQuery& q, const uint32_t* triangles, const MeshFilter& found, MeshManifolds& manifolds) {
     const bool one_sided = q.surface.one_sided();
-    for (uint64_t live = found.live(); live != 0; live &= live - 1) {
-        Triangle t = make_triangle(q.surface, triangles[std::countr_zero(live)], q.position, q.centre);
-        if (t.from_behind && one_sided) continue;
+    for (int i = 0; i < found.live(); ++i) {
+        if (one_sided && found.is_behind(i)) continue;
         TriangleContact contact;
-        sphere_triangle(q, t, contact);
+        sphere_triangle(q, left_triangle(q, triangles, found, i), contact);
         manifolds.add(contact);
     }
 }
 
 // --- faces
 
-// Which face of a box or hull looks along a direction; -1: of other shapes, whose faces turn with the direction.
-int32_t number_of_face(const Geometry& g, Vec3 direction) {
-    if (g.kind == GeometryKind::hull) return static_cast<int32_t>(support_face(*g.hull, direction));
-    if (g.kind != GeometryKind::box) return -1;
-    Vec3 size = absolute(direction);
-    int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    return 2 * axis + (component(direction, axis) >= 0.0f ? 1 : 0);
+// The face that looks at a plane, by what the filter knows.
+int look_at(MeshCollision& q, Vec3 normal, int32_t number) {
+    if (q.face != no_face && (number >= 0 ? number == q.face_number : q.facing == normal)) return q.face;
+    q.facing = normal;
+    q.face_number = number;
+    new (&q.face_at(++q.face)) ShapeFace(q.shape, -normal);
+    return q.face;
 }
 
-void look_at(MeshCollision& q, Vec3 normal, const MeshFilter& found, int i) {
-    if (q.face != no_face && q.facing == normal) return;
-    q.facing = normal;
-    Vec3 down = rotate_inverse(q.turn, -normal);
-    q.lowest = rotate(q.turn, found.has_lowest() ? found.lowest(i) : support_core(q.shape, down));
-    const int32_t number = number_of_face(q.shape, down);
-    if (number >= 0 && number == q.face_number) return;
-    q.face_number = number;
-    ShapeFace& face = q.faces[++q.face];
-    face.face = best_face(q.shape, down);
-    transform_face({{}, q.turn}, face.face);
-    face.update();
-}
+// A triangle of the batch.
+struct FaceJob {
+    Triangle t;
+    const Face& face;
+    Vec3 lowest;   // the core's point along the normal
+    float height;  // of that over the triangle
+    bool apart;    // the core is farther than the limit, though not from its plane
+    uint8_t beyond;
+};
 
 // The part of the shape's face over the triangle, and its lowest point where that is over it and below the face.
-void read_over(const MeshCollision& q, const FaceJob& job, FaceOverTriangle& out) {
-    const Triangle& t = job.t;
-    const Face& face = q.faces[job.face].face;
-    q.batch.read(job.lane, t, face, q.surface, out);
-    const float height = q.batch.lowest_height[job.lane];
+void read_over(const MeshCollision& q, const FaceJob& job, int lane, FaceOverTriangle& out) {
+    q.batch.read(lane, job.t, job.face, q.surface, out);
     float deepest = 3e38f;
     for (int i = 0; i < out.count; ++i) deepest = minimum(deepest, out.points[i].height);
-    if (height < deepest - 10.0f * level * q.size && q.batch.lowest_over(job.lane)) {
-        const uint32_t id = point_id(face_feature(0), face_feature(face.id));
-        const Vec3 foot = job.lowest - height * t.normal;
-        out.points[out.count++] = {foot.x, foot.y, foot.z, height, id};
+    if (job.height < deepest - 10.0f * level * q.size && q.batch.lowest_over(lane)) {
+        const uint32_t id = point_id(face_feature(0), face_feature(job.face.id));
+        const Vec3 foot = job.lowest - job.height * job.t.normal;
+        out.points[out.count++] = {foot.x, foot.y, foot.z, job.height, id};
     }
 }
 
-void face_contact(const MeshCollision& q, const FaceJob& job, const FaceOverTriangle& over, TriangleContact& out) {
+void face_contact(const MeshQuery& q, const FaceJob& job, const FaceOverTriangle& over, TriangleContact& out) {
     const Triangle& t = job.t;
     float radius = q.shape.rounding;
-    start(q, t, t.normal, true, radius + q.faces[job.face].face.extra_radius, 1.0f, out);
+    start(q, t, t.normal, true, radius + job.face.extra_radius, 1.0f, out);
+    const Vec3 front = q.surface.normal(t.index);
+    out.front = t.from_behind ? -front : front;
     for (int i = 0; i < over.count && i < max_clipped_points; ++i) {
         const FaceOverTriangle::Point& p = over.points[i];
         add_point(p.foot() + (0.5f * (p.height - radius)) * t.normal, p.height - radius, p.id, out);
@@ -222,9 +218,9 @@ void face_contact(const MeshCollision& q, const FaceJob& job, const FaceOverTria
 // of the core is over the triangle. Overlapping, take a segment from a lowest point p to the centre: leaving the
 // triangle by the side over edge i takes at least the distance of that edge from the plane of the segment and the
 // edge's direction, and the whole core needs at least as much as a segment in it.
-bool is_shortest(const MeshCollision& q, const FaceJob& job, const FaceOverTriangle& over) {
+bool is_shortest(const MeshQuery& q, const FaceJob& job, const FaceOverTriangle& over) {
     const Triangle& t = job.t;
-    float lowest = q.batch.lowest_height[job.lane], limit = lowest + level * q.size;
+    float lowest = job.height, limit = lowest + level * q.size;
     Vec3 p{};
     float count = 0.0f;
     for (int i = 0; i < over.count; ++i) {
@@ -235,8 +231,8 @@ bool is_shortest(const MeshCollision& q, const FaceJob& job, const FaceOverTrian
     if (count == 0.0f) return false;
     if (lowest >= 0.0f) return true;
     p = (1.0f / count) * p;
-    Vec3 along = q.centre - p;
-    if (dot(t.normal, q.centre - t.vertices[0]) < -lowest) return false;
+    Vec3 along = q.heart - p;
+    if (dot(t.normal, q.heart - t.vertices[0]) < -lowest) return false;
     for (int i = 0; i < 3; ++i) {
         Vec3 edge = t.vertices[(i + 1) % 3] - t.vertices[i];
         Vec3 side = normalize(cross(along, edge));
@@ -261,7 +257,7 @@ ConvexDistance distance_to(const MeshQuery& q, const Triangle& t, float limit) {
     flat_core.kind = GeometryKind::triangle;
     flat_core.triangle = t.vertices;
     GjkCache cold;
-    return distance({&flat_core, &q.shape, {{}, q.turn}}, cold, q.settings.simplex, limit);
+    return distance({&flat_core, &q.shape, {}}, cold, q.settings.simplex, limit);
 }
 
 // Behind a closed surface's side, whose neighbour across one of these edges the shape's centre is in front of: the
@@ -270,7 +266,8 @@ bool neighbour_pushes(const MeshQuery& q, const Triangle& t, uint8_t edges) {
     for (int i = 0; i < 3; ++i) {
         int32_t neighbour = q.surface.neighbour(t.index, i);
         if (!((edges & t.bent) >> i & 1) || neighbour < 0) continue;
-        float height = dot(q.surface.normal(static_cast<uint32_t>(neighbour)), q.centre - t.vertices[i]);
+        const Vec3 front = q.to_contact * q.surface.normal(static_cast<uint32_t>(neighbour));
+        float height = dot(front, q.heart - t.vertices[i]);
         if (t.from_behind ? height > 0.0f : height < 0.0f) return true;
     }
     return false;
@@ -312,8 +309,7 @@ bool along_edge(const MeshQuery& q, const Triangle& t, const Face& line, uint8_t
 void edge_contact(const MeshQuery& q, const Triangle& t, const ConvexDistance& nearest, uint8_t edges,
                   TriangleContact& out) {
     Vec3 normal = nearest.normal;
-    Face face = best_face(q.shape, rotate_inverse(q.turn, -normal));
-    transform_face({{}, q.turn}, face);
+    const Face face = best_face(q.shape, -normal);
     if (face.count >= 3 && dot(face.normal, normal) < -flat && on_shape_face(q, t, face, out)) return;
     if (face.count == 2 && along_edge(q, t, face, edges, normal, out)) return;
     float radius = q.shape.rounding;
@@ -341,85 +337,85 @@ bool rim_contact(const MeshQuery& q, const Triangle& t, const ConvexDistance& ne
 }
 
 // Whether only the rim of a triangle might touch the shape, which is beside it.
-bool is_beside(const MeshCollision& q, uint32_t index, const MeshFilter& found, int i) {
+bool is_beside(const MeshQuery& q, uint32_t index, const MeshFilter& found, int i) {
     if (!found.has_lowest() || found.is_apart(i) || found.is_behind(i) || !found.is_beside(i)) return false;
-    const uint8_t touching = q.surface.convex_edges(index);
-    return (touching & q.surface.sharp_edges(index)) == 0;
+    return (q.surface.convex_edges(index) & q.surface.sharp_edges(index)) == 0;
 }
 
-void leave_for_later(MeshCollision& q, const FaceJob& job) {
-    q.beyond[q.beside_count] = job.beyond;
-    q.beside[q.beside_count++] = job.t.index;
+void leave_for_later(MeshCollision& q, uint32_t index, uint8_t beyond) {
+    q.beyond[q.beside_count] = beyond;
+    q.beside[q.beside_count++] = index;
 }
 
 // What a triangle gives whose face is cut.
-void convex_triangle(MeshCollision& q, const FaceJob& job, const MeshFilter& found, TriangleContact& out) {
+void convex_triangle(MeshCollision& q, const FaceJob& job, int lane, TriangleContact& out) {
     const Triangle& t = job.t;
-    const bool apart = found.is_apart(job.found);  // though not from its plane
-    float limit = q.pair.margin + q.shape.rounding;
-    float height = q.batch.lowest_height[job.lane];
-    if (height > limit) return;
+    const float limit = q.batch.limit;
     q.footing.note(q, t.index, t.from_behind, job.beyond);
     FaceOverTriangle over;
-    read_over(q, job, over);
+    read_over(q, job, lane, over);
     // A face within a flat or hollow part can touch with its own normal only, and so can the part of one within a
     // gently rolling surface that the shape is over. Overlapping from behind, the way out may be across an edge.
     const bool gentle = (t.touching & t.sharp) == 0, over_face = over.count > 0;
-    bool sure =
-        (t.touching == 0 || (gentle && !apart && over_face)) && (height >= 0.0f || !t.from_behind || t.bent == 0);
+    bool sure = (t.touching == 0 || (gentle && !job.apart && over_face)) &&
+                (job.height >= 0.0f || !t.from_behind || t.bent == 0);
     if (sure || is_shortest(q, job, over)) return face_contact(q, job, over, out);
-    if (apart) return;
-    if (gentle && !over_face && q.beside_count < MeshCollision::most_beside) return leave_for_later(q, job);
+    if (job.apart) return;
+    if (gentle && !over_face && q.beside_count < MeshCollision::most_beside)
+        return leave_for_later(q, t.index, job.beyond);
     ConvexDistance nearest = distance_to(q, t, limit);
     if (nearest.distance > limit || rim_contact(q, t, nearest, out)) return;
     face_contact(q, job, over, out);
 }
 
-// Cuts the faces of the jobs that wait, and adds what their triangles give.
-void finish_jobs(MeshCollision& q, const MeshFilter& found, MeshManifolds& manifolds) {
-    if (q.batch.count > 0) q.settings.clip(q.batch);
-    for (int k = 0; k < q.job_count; ++k) {
-        FaceJob& job = q.jobs[k];
-        if (job.face == no_face) {
-            q.footing.note(q, job.t.index, false, job.beyond);
-            if (job.t.touching != 0) leave_for_later(q, job);
+// Those of the batch, for which faces are chosen and cut.
+void collide_batch(MeshCollision& q, const uint32_t* triangles, MeshFilter& found, int first,
+                   MeshManifolds& manifolds) {
+    OverTriangleBatch& batch = q.batch;
+    batch.begin(found.batch(), first);
+    const bool one_sided = q.surface.one_sided();
+    bool may_be_later = q.beside_count + batch.count <= MeshCollision::most_beside;
+    for (int k = 0; k < batch.count; ++k) {
+        const int i = first + k;
+        q.face_of[k] = no_face;
+        if (one_sided && found.is_behind(i)) continue;
+        if (may_be_later && is_beside(q, triangles[found.number(i)], found, i)) continue;
+        const Vec3 normal = found.normal(i);
+        if (!found.has_lowest()) found.set_lowest(i, support_core(q.shape, -normal));
+        q.face_of[k] = look_at(q, normal, found.face(i));
+        batch.set_face(k, q.face_at(q.face_of[k]));
+    }
+    q.settings.clip(batch);
+    for (int k = 0; k < batch.count; ++k) {
+        const int i = first + k;
+        if (q.face_of[k] == no_face) {
+            if (one_sided && found.is_behind(i)) continue;
+            const uint32_t index = triangles[found.number(i)];
+            q.footing.note(q, index, false, found.edges_beyond(i));
+            if (q.surface.convex_edges(index) != 0) leave_for_later(q, index, found.edges_beyond(i));
             continue;
         }
-        if (!found.has_lowest()) job.beyond = q.batch.beyond(job.lane);
+        const float height = batch.lowest_height[k];
+        if (height > batch.limit) continue;
+        const uint8_t beyond = found.has_lowest() ? found.edges_beyond(i) : batch.beyond(k);
+        const FaceJob job{left_triangle(q, triangles, found, i), q.face_at(q.face_of[k]).face, found.lowest(i), height,
+                          found.is_apart(i), beyond};
         TriangleContact contact;
-        convex_triangle(q, job, found, contact);
+        convex_triangle(q, job, k, contact);
         manifolds.add(contact);
     }
-    q.job_count = 0;
-    q.batch.clear();
-    if (q.face > 0) q.faces[0] = q.faces[q.face];
-    q.face = minimum(q.face, 0);
 }
 
-void collide_faces(MeshCollision& q, const uint32_t* triangles, const MeshFilter& found, MeshManifolds& manifolds) {
-    const bool one_sided = q.surface.one_sided();
-    for (uint64_t live = found.live(); live != 0; live &= live - 1) {
-        const int i = std::countr_zero(live);
-        if (one_sided && found.is_behind(i)) continue;
-        if (q.job_count == MeshCollision::most_jobs) finish_jobs(q, found, manifolds);
-        FaceJob& job = q.jobs[q.job_count++];
-        job.t = make_triangle(q.surface, triangles[i], q.position, q.centre);
-        job.found = i;
-        job.face = no_face;
-        if (found.has_lowest()) job.beyond = found.edges_beyond(i);
-        if (q.beside_count + q.job_count <= MeshCollision::most_beside && is_beside(q, triangles[i], found, i)) continue;
-        look_at(q, job.t.normal, found, i);
-        job.lowest = q.lowest;
-        job.face = q.face;
-        job.lane = q.batch.count;
-        q.batch.add(job.t, q.faces[q.face], q.lowest);
+void collide_faces(MeshCollision& q, const uint32_t* triangles, MeshFilter& found, MeshManifolds& manifolds) {
+    for (int first = 0; first < found.live(); first += OverTriangleBatch::capacity) {
+        if (q.face > 0) new (&q.face_at(0)) ShapeFace(q.face_at(q.face)), q.face = 0;
+        collide_batch(q, triangles, found, first, manifolds);
     }
-    finish_jobs(q, found, manifolds);
 }
 
 // What the shape is beside, once all that it is over is known.
 void beside_triangle(const MeshCollision& q, int i, TriangleContact& out) {
-    Triangle t = make_triangle(q.surface, q.beside[i], q.position, q.centre);
+    const Triangle t = q.triangle(q.beside[i]);
     if (!q.footing.may_touch_rim(q, t, q.beyond[i])) return;
     float limit = q.pair.margin + q.shape.rounding;
     ConvexDistance nearest = distance_to(q, t, limit);
@@ -432,9 +428,8 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
                         int capacity) {
     MeshCollision q(pair, settings);
     q.batch.limit = pair.margin + q.shape.rounding, q.batch.level = level * q.size;
-    q.batch.clear();
     MeshManifolds manifolds(10.0f * level * q.size);
-    for_each_near(q, q.batch.limit, kept, [&](const uint32_t* triangles, const MeshFilter& found) {
+    for_each_near(q, q.batch.limit, kept, [&](const uint32_t* triangles, MeshFilter& found) {
         if (pair.b->kind == GeometryKind::point) collide_ball(q, triangles, found, manifolds);
         else collide_faces(q, triangles, found, manifolds);
     });
@@ -443,26 +438,18 @@ int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings
         beside_triangle(q, i, contact);
         manifolds.add(contact);
     }
-    int count = manifolds.write(out, capacity < max_mesh_manifolds ? capacity : max_mesh_manifolds);
-    for (int k = 0; k < count; ++k) {
-        Manifold& m = out[k];
-        m.normal = rotate(pair.rotation_a, m.normal);
-        for (int i = 0; i < m.count; ++i) {
-            m.points[i].position = pair.offset + rotate(pair.rotation_a, m.points[i].position);
-        }
-    }
-    return count;
+    return manifolds.write({pair.rotation_a, q.contact_rotation(), pair.offset}, out,
+                           capacity < max_mesh_manifolds ? capacity : max_mesh_manifolds);
 }
 
 bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& settings) {
     const MeshQuery q(pair, settings);
     bool touching = false;
     for_each_near(q, q.shape.rounding, nullptr, [&](const uint32_t* triangles, const MeshFilter& found) {
-        for (uint64_t live = found.live(); live != 0 && !touching; live &= live - 1) {
-            const int i = std::countr_zero(live);
+        for (int i = 0; i < found.live() && !touching; ++i) {
             if (found.is_apart(i)) continue;
-            Triangle t = make_triangle(q.surface, triangles[i], q.position, q.centre);
-            float radius = q.shape.rounding;
+            const Triangle t = left_triangle(q, triangles, found, i);
+            const float radius = q.shape.rounding;
             touching = pair.b->kind == GeometryKind::point ? length(nearest_on_triangle(t.vertices, {}).point) <= radius
                                                            : distance_to(q, t, radius).distance <= radius;
         }

@@ -5,6 +5,7 @@
 
 #include "math/turned.h"
 #include "math/wide/gather.h"
+#include "math/wide/mask.h"
 #include "math/wide/wide.h"
 #include "world/narrow/kernels.h"
 
