@@ -93,7 +93,8 @@ LENDULET_FORCE_INLINE Vec3T<F> load(const float (&rows)[3][MeshFilterBatch::room
     return {load_wide<F>(rows[0] + first), load_wide<F>(rows[1] + first), load_wide<F>(rows[2] + first)};
 }
 
-// The number of the face that looks along a direction, as number_of_face() has it; -1: of other shapes.
+// The number of the face that looks along a unit direction, of which best_face() gives all such directions the same; -1:
+// of other shapes.
 template <class F>
 LENDULET_FORCE_INLINE F facing(const MeshFilterBatch& b, Vec3T<F> d) {
     const F zero{}, one = splat<F>(1.0f), two = splat<F>(2.0f);
@@ -102,6 +103,10 @@ LENDULET_FORCE_INLINE F facing(const MeshFilterBatch& b, Vec3T<F> d) {
         auto by_x = (x >= y) & (x >= z), by_y = y >= z;
         const F along = select(by_x, d.x, select(by_y, d.y, d.z));
         return select(by_x, zero, select(by_y, two, two + two)) + select(along >= zero, one, zero);
+    }
+    if (b.shape->kind == GeometryKind::segment) {
+        const F end = select(d.y > zero, one, zero);
+        return select(absolute(d.y) <= splat<F>(segment_side_sine), two, end);
     }
     F number = splat<F>(-1.0f), best = splat<F>(-3e38f);
     for (int i = 0; i < b.hull_faces; ++i) {

@@ -111,16 +111,17 @@ int MeshManifolds::write(const Placing& placing, Manifold* out, int capacity) {
         for (int i = best; i > k; --i) order[i] = order[i - 1];
         order[k] = found;
     }
+    const Mat3 turn = rotation_matrix(placing.from_contact);
     for (int k = 0; k < written; ++k) {
         Group& group = groups_[order[k]];
         if (group.count > 1) reduce(group);
         Manifold& m = out[k];
         m.normal =
-            group.face ? rotate(placing.from_mesh, group.front) : rotate(placing.from_contact, group.normal);
+            group.face ? rotate(placing.from_mesh, group.front) : turn * group.normal;
         m.count = group.count;
         for (int i = 0; i < group.count; ++i) {
             const MeshPoint& p = group.points[i];
-            m.points[i] = {placing.position + rotate(placing.from_contact, p.position()), p.separation, p.id};
+            m.points[i] = {placing.position + turn * p.position(), p.separation, p.id};
         }
         m.radius_a = 0.0f;
         m.radius_b = group.radius;

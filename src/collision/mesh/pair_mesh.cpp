@@ -27,6 +27,10 @@ constexpr float level = MeshQuery::level;
 constexpr float flat = 0.998f;
 
 constexpr int no_face = -1;
+// Corners tried before closest points are sought; of the shape's size, the least distance at which they are, and how far
+// what is proven may be off.
+constexpr int corner_attempts = 3;
+constexpr float least_between = 0.01f, proven_gap = 1e-6f;
 
 struct MeshCollision : MeshQuery {
     using MeshQuery::MeshQuery;
@@ -36,9 +40,9 @@ struct MeshCollision : MeshQuery {
     int face_of[most_jobs];  // the face that each triangle of the batch is looked at by; none: only its rim might touch
 
     // Faces of the shape: triangles of one plane share them, and so do those that one face of a box or hull looks at.
-    Vec3 facing{};  // the plane's normal
-    int face = no_face;        // the last one
-    int32_t face_number = -1;  // its number, of a box or hull
+    int face_count = 0;
+    int32_t face_number[most_jobs + 1];  // -1: of other shapes
+    Vec3 facing{};                       // the normal of the plane that the last one looks at
     alignas(ShapeFace) std::byte faces[(most_jobs + 1) * sizeof(ShapeFace)];
     ShapeFace& face_at(int i) { return reinterpret_cast<ShapeFace*>(faces)[i]; }
     const ShapeFace& face_at(int i) const { return reinterpret_cast<const ShapeFace*>(faces)[i]; }
@@ -47,8 +51,7 @@ struct MeshCollision : MeshQuery {
     // Triangles that the shape is beside: their edges are left until it is known what else it stands on.
     static constexpr int most_beside = 48;
     int beside_count = 0;
-    uint32_t beside[most_beside];
-    uint8_t beyond[most_beside];  // their edges
+    Footing::Beside beside[most_beside];
 };
 
 // By how much the box within which triangles are kept is wider than needed: of the shape's size and of the margin,
@@ -171,13 +174,20 @@ void collide_ball(const MeshQuery& q, const uint32_t* triangles, const MeshFilte
 
 // --- faces
 
-// The face that looks at a plane, by what the filter knows.
+// The face that looks at a plane, by its number where the filter knows it.
 int look_at(MeshCollision& q, Vec3 normal, int32_t number) {
-    if (q.face != no_face && (number >= 0 ? number == q.face_number : q.facing == normal)) return q.face;
+    int i = q.face_count - 1;
+    if (number >= 0) {
+        while (i >= 0 && q.face_number[i] != number) --i;
+        if (i >= 0) return i;
+    } else if (i >= 0 && q.facing == normal) {
+        return i;
+    }
+    i = q.face_count++;
     q.facing = normal;
-    q.face_number = number;
-    new (&q.face_at(++q.face)) ShapeFace(q.shape, -normal);
-    return q.face;
+    q.face_number[i] = number;
+    new (&q.face_at(i)) ShapeFace(q.shape, -normal);
+    return i;
 }
 
 // A triangle of the batch.
@@ -252,7 +262,30 @@ uint8_t edges_at(const MeshQuery& q, const Triangle& t, Vec3 point) {
     return edges;
 }
 
+// Whether a corner of the core and the point of the triangle nearest to it are the nearest points of both, or the two
+// are farther apart than `limit`: then the core's farthest points against the direction between them prove it. Where
+// they are very near the direction is not certain enough.
+bool find_nearest_corner(const MeshQuery& q, const Triangle& t, float limit, ConvexDistance& out) {
+    Vec3 corner = support_core(q.shape, -t.normal);
+    for (int attempt = 0; attempt < corner_attempts; ++attempt) {
+        const Vec3 point = nearest_on_triangle(t.vertices, corner).point, between = corner - point;
+        const float d = length(between);
+        if (!(d > least_between * q.size)) return false;
+        const Vec3 normal = (1.0f / d) * between, farthest = support_core(q.shape, -normal);
+        const float gap = dot(normal, corner - farthest);
+        const bool proven = gap <= proven_gap * q.size;
+        if (proven || d - gap > limit) {
+            out = {d - maximum(gap, 0.0f), normal, point, corner, 0, 0, true};
+            return true;
+        }
+        corner = farthest;
+    }
+    return false;
+}
+
 ConvexDistance distance_to(const MeshQuery& q, const Triangle& t, float limit) {
+    ConvexDistance found;
+    if (find_nearest_corner(q, t, limit, found)) return found;
     Geometry flat_core;
     flat_core.kind = GeometryKind::triangle;
     flat_core.triangle = t.vertices;
@@ -342,10 +375,7 @@ bool is_beside(const MeshQuery& q, uint32_t index, const MeshFilter& found, int 
     return (q.surface.convex_edges(index) & q.surface.sharp_edges(index)) == 0;
 }
 
-void leave_for_later(MeshCollision& q, uint32_t index, uint8_t beyond) {
-    q.beyond[q.beside_count] = beyond;
-    q.beside[q.beside_count++] = index;
-}
+void leave_for_later(MeshCollision& q, const Footing::Beside& t) { q.beside[q.beside_count++] = t; }
 
 // What a triangle gives whose face is cut.
 void convex_triangle(MeshCollision& q, const FaceJob& job, int lane, TriangleContact& out) {
@@ -362,7 +392,7 @@ void convex_triangle(MeshCollision& q, const FaceJob& job, int lane, TriangleCon
     if (sure || is_shortest(q, job, over)) return face_contact(q, job, over, out);
     if (job.apart) return;
     if (gentle && !over_face && q.beside_count < MeshCollision::most_beside)
-        return leave_for_later(q, t.index, job.beyond);
+        return leave_for_later(q, {t.index, job.beyond, t.from_behind});
     ConvexDistance nearest = distance_to(q, t, limit);
     if (nearest.distance > limit || rim_contact(q, t, nearest, out)) return;
     face_contact(q, job, over, out);
@@ -392,7 +422,7 @@ void collide_batch(MeshCollision& q, const uint32_t* triangles, MeshFilter& foun
             if (one_sided && found.is_behind(i)) continue;
             const uint32_t index = triangles[found.number(i)];
             q.footing.note(q, index, false, found.edges_beyond(i));
-            if (q.surface.convex_edges(index) != 0) leave_for_later(q, index, found.edges_beyond(i));
+            if (q.surface.convex_edges(index) != 0) leave_for_later(q, {index, found.edges_beyond(i), false});
             continue;
         }
         const float height = batch.lowest_height[k];
@@ -408,15 +438,15 @@ void collide_batch(MeshCollision& q, const uint32_t* triangles, MeshFilter& foun
 
 void collide_faces(MeshCollision& q, const uint32_t* triangles, MeshFilter& found, MeshManifolds& manifolds) {
     for (int first = 0; first < found.live(); first += OverTriangleBatch::capacity) {
-        if (q.face > 0) new (&q.face_at(0)) ShapeFace(q.face_at(q.face)), q.face = 0;
+        q.face_count = 0;
         collide_batch(q, triangles, found, first, manifolds);
     }
 }
 
 // What the shape is beside, once all that it is over is known.
 void beside_triangle(const MeshCollision& q, int i, TriangleContact& out) {
-    const Triangle t = q.triangle(q.beside[i]);
-    if (!q.footing.may_touch_rim(q, t, q.beyond[i])) return;
+    if (!q.footing.may_touch_rim(q, q.beside[i])) return;
+    const Triangle t = q.triangle(q.beside[i].index);
     float limit = q.pair.margin + q.shape.rounding;
     ConvexDistance nearest = distance_to(q, t, limit);
     if (nearest.distance <= limit) rim_contact(q, t, nearest, out);

@@ -222,7 +222,9 @@ private:
     void collide_mesh(ColliderPair& p, uint32_t index, float margin) {
         for (uint32_t i = 1; i < p.count; ++i) prefetch<3>(&world_.records[p.first_record + i]);
         PairCache& cache = world_.pairs.caches[index];
-        Manifold manifolds[max_mesh_manifolds];
+        // Without initial values, as the room for old contacts.
+        alignas(Manifold) std::byte manifold_room[max_mesh_manifolds * sizeof(Manifold)];
+        auto* manifolds = reinterpret_cast<Manifold*>(manifold_room);
         int count = collide(collide_input(world_, p, margin), cache, settings(), manifolds, p.capacity,
                             &world_.pairs.near_triangles[p.surface]);
         const ShapeFrame &a = world_.frames[collider_a(p)], &b = world_.frames[collider_b(p)];
