@@ -8,6 +8,7 @@
 #include <new>
 
 #include "geometry/triangle_surface.h"
+#include "math/wide/gather.h"
 #include "math/wide/wide.h"
 #include "world/world_data.h"
 
@@ -69,13 +70,14 @@ struct Floor {
     Floor(const WorldData& world, const Touch& t) : touch(t) {
         const ContactRecord& r = world.records[t.record];
         normal = {r.normal[0], r.normal[1], r.normal[2]};
-        F s;
-        for (int j = 0; j < 4; ++j) {
-            const int i = j < r.point_count ? j : 0;
-            const float* x = r.points[i].position;
-            points.x[j] = x[0], points.y[j] = x[1], points.z[j] = x[2];
-            s[j] = world.found_separations[t.record].s[i];
-        }
+        static_assert(sizeof r.points == 16 * sizeof(float));
+        constexpr int32_t rows[4] = {0, 1, 2, 3};
+        F x[4];
+        gather4<4>(r.points[0].position, rows, 4, 0, x);
+        F s = load_wide<F>(world.found_separations[t.record].s);
+        auto there = F{0.0f, 1.0f, 2.0f, 3.0f} < splat<F>(static_cast<float>(r.point_count));
+        for (F* v : {&x[0], &x[1], &x[2], &s}) *v = select(there, *v, splat<F>((*v)[0]));
+        points = {x[0], x[1], x[2]};
         points = splat<F>(t.origin) + points - (splat<F>(0.5f) * s) * splat<F>(normal);
         const F heights = dot(splat<F>(normal), points);
         height = heights[0], overlap = maximum(0.0f, -s[0]);

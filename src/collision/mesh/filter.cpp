@@ -35,8 +35,7 @@ MeshFilter::MeshFilter(const MeshQuery& q, float limit) : surface_(q.surface), f
     b.box_centre = 0.5f * (hull.lower + hull.upper), b.box_half = 0.5f * (hull.upper - hull.lower);
     if (hull.vertices.size() > most_corners) return;
     b.hull = hull.vertices.data(), b.hull_count = static_cast<int>(hull.vertices.size());
-    b.hull_normal[0] = hull.normals.xs.data(), b.hull_normal[1] = hull.normals.ys.data();
-    b.hull_normal[2] = hull.normals.zs.data(), b.hull_faces = static_cast<int>(hull.faces.size());
+    b.hull_face = hull.faces.data(), b.hull_faces = static_cast<int>(hull.faces.size());
 }
 
 void MeshFilter::load(const uint32_t* triangles, int count) {

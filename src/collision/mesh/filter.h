@@ -9,6 +9,7 @@
 
 namespace lendulet {
 
+struct HullFace;
 struct MeshQuery;
 
 // Triangles side by side, what they are tested against, and what is left of them; filled and read by MeshFilter.
@@ -19,8 +20,8 @@ struct MeshFilterBatch {
     float lean[room];  // most that the direction of the shortest distance leans across a side, as sine
 
     const Geometry* shape;
-    const Vec3* hull;  // its corners, where it is a hull of few, and normals of its faces
-    const float* hull_normal[3];
+    const Vec3* hull;            // its corners, where it is a hull of few,
+    const HullFace* hull_face;  // and its faces
     int hull_count, hull_faces;
     Mat3 to_shape;                // rows: the axes of contacts in those of the mesh
     Vec3 position, lower, upper;  // of the shape, and bounds relative to that, margin included, mesh axes

@@ -110,7 +110,7 @@ LENDULET_FORCE_INLINE F facing(const MeshFilterBatch& b, Vec3T<F> d) {
     }
     F number = splat<F>(-1.0f), best = splat<F>(-3e38f);
     for (int i = 0; i < b.hull_faces; ++i) {
-        const F along = dot(splat<F>(Vec3{b.hull_normal[0][i], b.hull_normal[1][i], b.hull_normal[2][i]}), d);
+        const F along = dot(splat<F>(b.hull_face[i].normal), d);
         auto better = along > best;
         best = select(better, along, best), number = select(better, splat<F>(static_cast<float>(i)), number);
     }
@@ -157,6 +157,11 @@ LENDULET_FORCE_INLINE void test_block(MeshFilterBatch& b, int first, uint32_t us
         beside = beside | (separation > outside * size[k]);
     }
     auto within_limit = meet(boxes_of(p), b.box_lower, b.box_upper);
+    for (int i = 0; i < b.hull_faces; ++i) {
+        const V along = splat<F>(b.hull_face[i].normal);
+        const F nearest = minimum(minimum(dot(along, p[0]), dot(along, p[1])), dot(along, p[2]));
+        within_limit = within_limit & (nearest <= splat<F>(b.hull_face[i].offset + b.limit));
+    }
     live = live & (within_limit | (height < zero));
     const uint32_t bits = mask_bits(live) & used;
     if (bits == 0) return;

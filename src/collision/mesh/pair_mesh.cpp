@@ -27,9 +27,9 @@ constexpr float level = MeshQuery::level;
 constexpr float flat = 0.998f;
 
 constexpr int no_face = -1;
-// Corners tried before closest points are sought; of the shape's size, the least distance at which they are, and how far
-// what is proven may be off.
-constexpr int corner_attempts = 3;
+// Before closest points are sought otherwise; of the shape's size, the least distance at which they are, and how far what
+// is proven may be off.
+constexpr int most_steps = 3;
 constexpr float least_between = 0.01f, proven_gap = 1e-6f;
 
 struct MeshCollision : MeshQuery {
@@ -262,30 +262,36 @@ uint8_t edges_at(const MeshQuery& q, const Triangle& t, Vec3 point) {
     return edges;
 }
 
-// Whether a corner of the core and the point of the triangle nearest to it are the nearest points of both, or the two
-// are farther apart than `limit`: then the core's farthest points against the direction between them prove it. Where
-// they are very near the direction is not certain enough.
-bool find_nearest_corner(const MeshQuery& q, const Triangle& t, float limit, ConvexDistance& out) {
-    Vec3 corner = support_core(q.shape, -t.normal);
-    for (int attempt = 0; attempt < corner_attempts; ++attempt) {
-        const Vec3 point = nearest_on_triangle(t.vertices, corner).point, between = corner - point;
+// The core's point nearest to p, of lines and boxes; of others, that farthest along `towards`.
+Vec3 nearest_in_core(const Geometry& g, Vec3 p, Vec3 towards) {
+    if (g.kind == GeometryKind::segment) return {0.0f, clamp(p.y, -g.size.y, g.size.y), 0.0f};
+    if (g.kind != GeometryKind::box) return support_core(g, towards);
+    return {clamp(p.x, -g.size.x, g.size.x), clamp(p.y, -g.size.y, g.size.y), clamp(p.z, -g.size.z, g.size.z)};
+}
+
+// From one to the other and back (Cheney, Goldstein 1959): the nearest points of core and triangle, or that the two are
+// farther apart than `limit`, where the core's farthest point against the direction between them proves it after few
+// steps. Where they are very near the direction is not certain enough.
+bool find_nearest(const MeshQuery& q, const Triangle& t, float limit, ConvexDistance& out) {
+    Vec3 in_core = support_core(q.shape, -t.normal);
+    for (int step = 0; step < most_steps; ++step) {
+        const Vec3 point = nearest_on_triangle(t.vertices, in_core).point, between = in_core - point;
         const float d = length(between);
         if (!(d > least_between * q.size)) return false;
-        const Vec3 normal = (1.0f / d) * between, farthest = support_core(q.shape, -normal);
-        const float gap = dot(normal, corner - farthest);
-        const bool proven = gap <= proven_gap * q.size;
-        if (proven || d - gap > limit) {
-            out = {d - maximum(gap, 0.0f), normal, point, corner, 0, 0, true};
+        const Vec3 normal = (1.0f / d) * between;
+        const float gap = dot(normal, in_core - support_core(q.shape, -normal));
+        if (gap <= proven_gap * q.size || d - gap > limit) {
+            out = {d - maximum(gap, 0.0f), normal, point, in_core, 0, 0, true};
             return true;
         }
-        corner = farthest;
+        in_core = nearest_in_core(q.shape, point, -normal);
     }
     return false;
 }
 
 ConvexDistance distance_to(const MeshQuery& q, const Triangle& t, float limit) {
     ConvexDistance found;
-    if (find_nearest_corner(q, t, limit, found)) return found;
+    if (find_nearest(q, t, limit, found)) return found;
     Geometry flat_core;
     flat_core.kind = GeometryKind::triangle;
     flat_core.triangle = t.vertices;
