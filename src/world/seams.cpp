@@ -106,9 +106,12 @@ float level_for(const ColliderInfo& moved) {
     return minimum(level_of_radius * moved.radius, level_of_depth * moved.depth);
 }
 
-// Whether E is nothing but the end of a piece of the floor F, to that level at the origin.
+float rounding_of(const Touch& a, const Touch& b) {
+    return rounding * max_component(absolute(a.origin) + absolute(b.origin));
+}
+
+// Whether E is nothing but the end of a piece of the floor F.
 bool is_covered(const WorldData& world, const Floor& e, const Floor& f, const ColliderInfo& moved, float level) {
-    level += rounding * max_component(absolute(e.touch.origin) + absolute(f.touch.origin));
     return f.covers(world, e, level, moved.radius) && !e.covers(world, f, level, moved.radius);
 }
 
@@ -130,8 +133,9 @@ void silence_pair(WorldData& world, uint32_t number) {
             for (uint32_t i = 0; i < p.count; ++i) {
                 if ((covered >> i & 1) != 0) continue;
                 const ColliderInfo& info = world.colliders.info[moved];
-                if (is_covered(world, Floor(world, touch_of(world, p, i)), floor, info, level_for(info)))
-                    covered |= 1u << i;
+                const Floor end(world, touch_of(world, p, i));
+                const float level = level_for(info) + rounding_of(end.touch, floor.touch);
+                if (is_covered(world, end, floor, info, level)) covered |= 1u << i;
             }
         }
     });
@@ -150,7 +154,7 @@ void mark_covered(WorldData& world, ColliderPair& p) {
     const bool several = has_floor(p) && p.count > 1;
     for (uint32_t i = 0; several && i < p.count; ++i) new (floors + i) Floor(world, touch_of(world, p, i));
     const ColliderInfo& moved = world.colliders.info[moved_collider(p)];
-    const float level = level_for(moved);
+    const float level = several ? level_for(moved) + rounding_of(floors[0].touch, floors[0].touch) : 0.0f;
     p.covered = false;
     for (uint32_t i = 0; i < p.count; ++i) {
         bool covered = false;

@@ -108,11 +108,19 @@ LENDULET_FORCE_INLINE F facing(const MeshFilterBatch& b, Vec3T<F> d) {
         const F end = select(d.y > zero, one, zero);
         return select(absolute(d.y) <= splat<F>(segment_side_sine), two, end);
     }
+    return splat<F>(-1.0f);
+}
+
+// The same of a hull of few corners, which the triangles are tested against on the way.
+template <class F, class M>
+LENDULET_FORCE_INLINE F facing_hull(const MeshFilterBatch& b, Vec3T<F> d, const Vec3T<F> (&p)[3], M& within_limit) {
     F number = splat<F>(-1.0f), best = splat<F>(-3e38f);
     for (int i = 0; i < b.hull_faces; ++i) {
-        const F along = dot(splat<F>(b.hull_face[i].normal), d);
+        const Vec3T<F> normal = splat<F>(b.hull_face[i].normal);
+        const F along = dot(normal, d), nearest = minimum(minimum(dot(normal, p[0]), dot(normal, p[1])), dot(normal, p[2]));
         auto better = along > best;
         best = select(better, along, best), number = select(better, splat<F>(static_cast<float>(i)), number);
+        within_limit = within_limit & (nearest <= splat<F>(b.hull_face[i].offset + b.limit));
     }
     return number;
 }
@@ -157,14 +165,13 @@ LENDULET_FORCE_INLINE void test_block(MeshFilterBatch& b, int first, uint32_t us
         beside = beside | (separation > outside * size[k]);
     }
     auto within_limit = meet(boxes_of(p), b.box_lower, b.box_upper);
-    for (int i = 0; i < b.hull_faces; ++i) {
-        const V along = splat<F>(b.hull_face[i].normal);
-        const F nearest = minimum(minimum(dot(along, p[0]), dot(along, p[1])), dot(along, p[2]));
-        within_limit = within_limit & (nearest <= splat<F>(b.hull_face[i].offset + b.limit));
-    }
+    live = live & (within_limit | (height < zero));
+    if ((mask_bits(live) & used) == 0) return;
+    F face;
+    if (b.hull_faces == 0) face = facing(b, away[0]);
+    else face = facing_hull(b, away[0], p, within_limit);
     live = live & (within_limit | (height < zero));
     const uint32_t bits = mask_bits(live) & used;
-    if (bits == 0) return;
 
     auto flag = [&](auto mask, int value) { return select(mask, splat<F>(static_cast<float>(value)), zero); };
     F flags = flag(~within_limit, MeshFilterBatch::apart) + flag(behind, MeshFilterBatch::behind) +
@@ -181,7 +188,7 @@ LENDULET_FORCE_INLINE void test_block(MeshFilterBatch& b, int first, uint32_t us
     for (int k = 0; k < 3; ++k) pack(b.p[k], b.live, bits, p[k]);
     pack(b.normal, b.live, bits, -away[0]);
     store_packed(b.flags + b.live, bits, flags);
-    store_packed(b.face + b.live, bits, facing(b, away[0]));
+    store_packed(b.face + b.live, bits, face);
     b.live += __builtin_popcount(bits);
 }
 
