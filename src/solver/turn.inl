@@ -43,6 +43,55 @@ LENDULET_FORCE_INLINE Vec3T<F> at_most_a_radian(Vec3T<F> turn) {
     return select(size2 > one, one / square_root(size2), one) * turn;
 }
 
+// The same of a turn of any angle up to 10^5 rad, as a whole: sine and cosine of an eighth of it, without whole turns,
+// by their series, doubled twice.
+template <class F>
+LENDULET_FORCE_INLINE QuatT<F> long_turn_quaternion(Vec3T<F> turn) {
+    const F one = splat<F>(1.0f), two = splat<F>(2.0f), to_whole = splat<F>(12582912.0f);  // 1.5 * 2^23
+    F angle = square_root(dot(turn, turn)), half = splat<F>(0.5f) * angle;
+    F turns = (half * splat<F>(0.15915494f) + to_whole) - to_whole;
+    F r = (half - turns * splat<F>(6.28125f)) - turns * splat<F>(1.9353072e-3f);  // 2 pi in two parts
+    F x = splat<F>(0.25f) * r, y = x * x;
+    F s = x * (one + y * (splat<F>(-1.0f / 6.0f) +
+                          y * (splat<F>(1.0f / 120.0f) +
+                               y * (splat<F>(-1.0f / 5040.0f) + y * splat<F>(1.0f / 362880.0f)))));
+    F c = one + y * (splat<F>(-0.5f) +
+                     y * (splat<F>(1.0f / 24.0f) +
+                          y * (splat<F>(-1.0f / 720.0f) +
+                               y * (splat<F>(1.0f / 40320.0f) + y * splat<F>(-1.0f / 3628800.0f)))));
+    for (int i = 0; i < 2; ++i) {
+        F doubled = two * s * c;
+        c = one - two * s * s;
+        s = doubled;
+    }
+    F along = select(angle > splat<F>(1e-20f), s / angle, splat<F>(0.5f));
+    return {along * turn.x, along * turn.y, along * turn.z, c};
+}
+
+// Bodies two of whose principal moments are equal turn by a closed form (Euler 1758): about L at an even rate while the
+// axis between goes with them, and about that axis at another.
+template <class F>
+struct SymmetricTop {
+    Vec3T<F> axis;    // principal frame
+    F along, across;  // inverse moments
+};
+template <class F>
+LENDULET_FORCE_INLINE auto find_symmetry(Vec3T<F> inverse, SymmetricTop<F>& top) {
+    const F one = splat<F>(1.0f), zero = splat<F>(0.0f);
+    auto about_x = inverse.y == inverse.z, about_y = inverse.x == inverse.z, about_z = inverse.x == inverse.y;
+    F y = select(about_y, one, zero), z = select(about_y, zero, one);
+    top.axis = {select(about_x, one, zero), select(about_x, zero, y), select(about_x, zero, z)};
+    top.along = select(about_x, inverse.x, select(about_y, inverse.y, inverse.z));
+    top.across = select(about_x, inverse.y, inverse.x);
+    return about_x | about_y | about_z;
+}
+template <class F>
+LENDULET_FORCE_INLINE QuatT<F> turn_top(QuatT<F> dq, QuatT<F> q0, Vec3T<F> L, const SymmetricTop<F>& top, F h) {
+    Vec3T<F> axis = rotate(multiply(dq, q0), top.axis);
+    F spin = (top.along - top.across) * dot(L, axis);
+    return multiply(long_turn_quaternion((h * top.across) * L), multiply(long_turn_quaternion((h * spin) * axis), dq));
+}
+
 inline constexpr int max_turn_parts = 128;
 inline constexpr float most_wish = 0.25f;  // of a part
 inline constexpr float quick = 0.2f;       // from here on 6 iterations
@@ -71,11 +120,19 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
     iterations = select(anisotropy <= one, zero, iterations);  // about a fixed axis L gives the velocity at once
     F parts = one;
     const bool some_quick = mask_bits(wish > splat<F>(quick)) != 0;
+    QuatT<F> whole = dq;
+    F by_closed_form = zero;
     if (some_quick) {
         // |L| and the least moment do not change while it tumbles, |w| does.
         F most = maximum(maximum(inverse.x, inverse.y), inverse.z);
         F steady = select(given, wish, splat<F>(2.0f * h) * square_root(dot(L, L)) * most);
         iterations = select(steady > splat<F>(quick), select(anisotropy > one, splat<F>(6.0f), zero), iterations);
+        SymmetricTop<F> top;
+        auto symmetric = find_symmetry(inverse, top);
+        by_closed_form = select(symmetric & (steady > splat<F>(quick)), select(given, zero, one), zero);
+        if (mask_bits(by_closed_form > zero)) whole = turn_top(dq, q0, L, top, splat<F>(h));
+        iterations = select(by_closed_form > zero, zero, iterations);
+        steady = select(by_closed_form > zero, zero, steady);
         for (int i = 1; i < max_turn_parts; i *= 2)
             parts = select(steady > splat<F>(most_wish) * parts, parts + parts, parts);
     }
@@ -106,5 +163,6 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
         add_compensated(q.z, low.z, d.z, active);
         add_compensated(q.w, low.w, d.w, active);
     }
+    if (some_quick) q = select(by_closed_form > zero, whole, q);
     return normalized(q);
 }
