@@ -39,6 +39,8 @@ static_assert(sizeof(ContactRecord) == 192);
 inline constexpr uint32_t contact_flipped = 1;  // A and B are exchanged against the order of the two colliders
 inline constexpr uint32_t contact_rolls = 2;    // it resists rolling or spinning: see ContactExtra
 inline constexpr uint32_t contact_sharp = 8;    // neither shape is round anywhere: corners meet faces
+inline constexpr uint32_t contact_balls = 16;   // of two balls: its normal is the line between their centres
+inline constexpr uint32_t contact_swift = 32;   // in a substep an arm grows by much of a body's size, see impacts.h
 
 // What it takes to schedule a contact, so that those who go through all of them, one by one, need not read the records.
 struct ContactEnds {

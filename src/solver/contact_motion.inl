@@ -15,7 +15,14 @@ template <class F>
 struct MovedArms {
     Vec3T<F> ra, rb, start_slip;
     F turned;  // square of the sine of half the angle by which one of the bodies has turned, at least
+    F swung;   // above 0 where an arm has grown by far_swing
 };
+
+// Square of how far an arm may grow, see MovedArms::swung. Deep within each other balls have arms of no length.
+template <class F>
+LENDULET_FORCE_INLINE F far_arm2(Vec3T<F> arm, F radius) {
+    return splat<F>(far_swing) * maximum(dot(arm, arm), radius * radius);
+}
 
 // Separations, levers and arms from the two bodies' displacements since the start of the step.
 template <int W, int P>
@@ -34,9 +41,12 @@ LENDULET_FORCE_INLINE MovedArms<Wide<float, W>> update_displacement(ContactRow<W
         c.turn.shift[1] = dot(e, t2);
     }
     const Arms<F> arms = arms_after(c, moved);
+    const F way = dot(moved, moved), left = splat<F>(1.0f) - c.follow;
     MovedArms<F> now{
         arms.ra, arms.rb, c.start_slip - cross(c.start_turn, moved),
-        maximum(dqa.x * dqa.x + dqa.y * dqa.y + dqa.z * dqa.z, dqb.x * dqb.x + dqb.y * dqb.y + dqb.z * dqb.z)};
+        maximum(dqa.x * dqa.x + dqa.y * dqa.y + dqa.z * dqa.z, dqb.x * dqb.x + dqb.y * dqb.y + dqb.z * dqb.z),
+        maximum((c.follow * c.follow) * way - far_arm2(c.ra, c.radius_a),
+                (left * left) * way - far_arm2(c.rb, c.radius_b))};
     c.lever_a = cross(now.ra, c.n);
     c.lever_b = cross(now.rb, c.n);
     c.start_approach = dot(c.n, now.start_slip);
@@ -110,19 +120,65 @@ LENDULET_FORCE_INLINE Arms<Wide<float, W>> place_turned(ContactRow<W, P>& c, con
     return {ra, rb};
 }
 
+// The same for two balls, whose normal is the line between their centres.
+template <int W>
+LENDULET_FORCE_INLINE Arms<Wide<float, W>> place_balls(ContactRow<W, 1>& c, const RowPlace<W, 1>& start,
+                                                       const BodyState* states) {
+    using F = Wide<float, W>;
+    const F one = splat<F>(1.0f), s = start.separation[0], radii = c.radius_a + c.radius_b;
+    Vec3T<F> dpa, dpb;
+    QuatT<F> dqa, dqb;
+    load_displacement_at<W>(states, c.a, dpa, dqa);
+    load_displacement_at<W>(states, c.b, dpb, dqb);
+    const Vec3T<F> between = (start.ra - start.rb) + (dpb - dpa);
+    const Vec3T<F> centre_a = rotate(dqa, start.ra - (c.radius_a + c.follow * s) * start.n);
+    const Vec3T<F> centre_b = rotate(dqb, start.rb + (c.radius_b + (one - c.follow) * s) * start.n);
+    const Vec3T<F> way = (between + centre_b) - centre_a;
+    const F distance = square_root(dot(way, way));
+    auto known = distance > splat<F>(0.01f) * radii;
+    c.n = select(known, (one / maximum(distance, splat<F>(1e-30f))) * way, c.n);
+    const Vec3T<F> t = cross(c.n, select(absolute(c.n.x) > splat<F>(0.5f), Vec3T<F>{splat<F>(0.0f), one, splat<F>(0.0f)},
+                                         Vec3T<F>{one, splat<F>(0.0f), splat<F>(0.0f)}));
+    c.t1 = (one / square_root(dot(t, t))) * t;
+    c.shift = splat<F>(0.0f);
+    c.p[0].separation = distance - radii;
+    const Vec3T<F> ra = centre_a + (c.radius_a + c.follow * c.p[0].separation) * c.n;
+    return {ra, ra - between};
+}
+
+// Puts lanes of balls among those of others. What they hold stays the same impulse, told by the new normal; it does not
+// pull.
+template <int W>
+LENDULET_FORCE_INLINE Arms<Wide<float, W>> select_balls(Wide<float, W> balls, ContactRow<W, 1>& renewed,
+                                                        const Arms<Wide<float, W>>& arms, const ContactRow<W, 1>& c,
+                                                        const RowPlace<W, 1>& start, Vec3T<Wide<float, W>> held,
+                                                        const BodyState* states) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f);
+    auto are = balls > zero;
+    ContactRow<W, 1> b = c;
+    const Arms<F> of_balls = place_balls<W>(b, start, states);
+    const Vec3T<F> t2 = cross(b.n, b.t1);
+    renewed.n = select(are, b.n, renewed.n);
+    renewed.t1 = select(are, b.t1, renewed.t1);
+    renewed.shift = select(are, b.shift, renewed.shift);
+    renewed.p[0].separation = select(are, b.p[0].separation, renewed.p[0].separation);
+    renewed.p[0].impulse = select(are, maximum(dot(held, b.n), zero), renewed.p[0].impulse);
+    renewed.friction.tangent[0] = select(are, dot(held, b.t1), renewed.friction.tangent[0]);
+    renewed.friction.tangent[1] = select(are, dot(held, t2), renewed.friction.tangent[1]);
+    return {select(are, of_balls.ra, arms.ra), select(are, of_balls.rb, arms.rb)};
+}
+
 // A row does not begin to turn where a body turns by more than this in a substep, in squares of the sine of half the
 // angle: 1/8 rad, one radian in an ordinary step. Which corner meets what is then another question in every substep,
 // and loads that turn so fast would drive the bodies.
 constexpr float fastest_turn = 0.0625f * 0.0625f;
 
-// 1 in the lanes that turn with their bodies: corners above a face that carry something, or will within two substeps if
-// they go on as they have so far; and those that have turned before.
+// 1 in the lanes that carry something, or will within two substeps if they go on as they have so far.
 template <int W, int P>
-LENDULET_FORCE_INLINE Wide<float, W> turning_lanes(const ContactRow<W, P>& c, Wide<float, W> turned,
-                                                   const SubstepConstants& k) {
+LENDULET_FORCE_INLINE Wide<float, W> near_lanes(const ContactRow<W, P>& c, const SubstepConstants& k) {
     using F = Wide<float, W>;
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f), ahead = splat<F>(1.0f + 2.0f / k.substeps_so_far);
-    const F fastest = splat<F>(fastest_turn * k.substeps_so_far * k.substeps_so_far);
     F near = zero;
     for (int j = 0; j < P; ++j) {
         F moved = c.shift;
@@ -130,9 +186,31 @@ LENDULET_FORCE_INLINE Wide<float, W> turning_lanes(const ContactRow<W, P>& c, Wi
         near = select(c.p[j].impulse > zero, one, near);
         near = select(c.p[j].separation + ahead * moved <= zero, one, near);
     }
+    return near;
+}
+
+// 1 in the lanes that turn with their bodies: corners above a face, where `near`; and those that have turned before.
+template <int W, int P>
+LENDULET_FORCE_INLINE Wide<float, W> turning_lanes(const ContactRow<W, P>& c, Wide<float, W> near,
+                                                   Wide<float, W> turned, const SubstepConstants& k) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
+    const F fastest = splat<F>(fastest_turn * k.substeps_so_far * k.substeps_so_far);
     near = select((turned > c.turn_limit) & (turned < fastest), near, zero);
     near = select(c.turn_limit < zero, one, near);
+    near = select(c.turn_limit < splat<F>(0.5f * following_balls), zero, near);
     return select(c.turn_limit < splat<F>(far_turn), near, zero);
+}
+
+// 1 in the lanes of two balls that have gone by some of their size, where `near`; and those that have followed before.
+template <int W, int P>
+LENDULET_FORCE_INLINE Wide<float, W> following_lanes(const ContactRow<W, P>& c, Wide<float, W> near,
+                                                     Wide<float, W> swung) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
+    near = select(c.turn_limit > splat<F>(far_turn), near, zero);
+    near = select(swung > zero, near, zero);
+    return select(c.turn_limit < splat<F>(0.5f * following_balls), one, near);
 }
 
 // Rows whose bodies have turned far since the start of the step; few ever come here, so bodies and manifolds are
@@ -150,7 +228,11 @@ template <int W, int P>
                                                      const ContactGroup& g, int first) {
     using F = Wide<float, W>;
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
-    const F turns = turning_lanes<W, P>(c, now.turned, k), renews = select(now.turned > splat<F>(far_turn), one, turns);
+    const F near = near_lanes<W, P>(c, k), corners = turning_lanes<W, P>(c, near, now.turned, k);
+    F balls = zero;
+    if constexpr (P == 1) balls = following_lanes<W, P>(c, near, now.swung);
+    const F turns = maximum(corners, balls);
+    const F renews = select(maximum(now.turned - maximum(c.turn_limit, splat<F>(far_turn)), now.swung) > zero, one, turns);
     auto turned = turns > zero, far = renews > zero;
     if (!mask_bits(far)) return now;
     RecordQuads<W> record{floats_of(g.records), {}};
@@ -164,10 +246,15 @@ template <int W, int P>
     }
     ContactRow<W, P> renewed = c;
     if (mask_bits(turned)) {
-        const Arms<F> arms = place_turned<W, P>(renewed, RowPlace<W, P>(ManifoldQuads<W, P>(record)), bodies.state);
+        const RowPlace<W, P> start(ManifoldQuads<W, P>{record});
+        const Vec3T<F> t2 = cross(c.n, c.t1), held = held_impulse<W, P>(c, t2);
+        Arms<F> arms{now.ra, now.rb};
+        if (mask_bits(corners > zero)) arms = place_turned<W, P>(renewed, start, bodies.state);
+        if constexpr (P == 1) {
+            if (mask_bits(balls > zero)) arms = select_balls<W>(balls, renewed, arms, c, start, held, bodies.state);
+        }
         const Vec3T<F> gone = select(turned, arms.ra - now.ra, zero_vector<F>());
-        const Vec3T<F> t2 = cross(c.n, c.t1), new_t2 = cross(renewed.n, renewed.t1);
-        const Vec3T<F> held = held_impulse<W, P>(c, t2);
+        const Vec3T<F> new_t2 = cross(renewed.n, renewed.t1);
         const Vec3T<F> linear = select(turned, held_impulse<W, P>(renewed, new_t2) - held, zero_vector<F>());
         const Vec3T<F> couple =
             select(turned, held_couple<W, P>(renewed, new_t2) - held_couple<W, P>(c, t2), zero_vector<F>()) +
@@ -189,7 +276,12 @@ template <int W, int P>
         c.t1 = select(turned, renewed.t1, c.t1);
         c.ra = c.ra + gone;
         c.rb = c.rb + gone;
-        c.turn_limit = select(turned, zero - one, c.turn_limit);
+        c.turn_limit = select(turned, select(balls > zero, splat<F>(following_balls), zero - one), c.turn_limit);
+        if constexpr (P == 1) {
+            c.p[0].impulse = select(turned, renewed.p[0].impulse, c.p[0].impulse);
+            for (int i = 0; i < 2; ++i)
+                c.friction.tangent[i] = select(turned, renewed.friction.tangent[i], c.friction.tangent[i]);
+        }
         c.shift = select(turned, renewed.shift, c.shift);
         for (int j = 0; j < P; ++j) {
             c.p[j].separation = select(turned, renewed.p[j].separation, c.p[j].separation);
@@ -226,7 +318,7 @@ LENDULET_FORCE_INLINE MovedArms<Wide<float, W>> follow_bodies(ContactRow<W, P>& 
                                                               WideVelocity<Wide<float, W>>& A,
                                                               WideVelocity<Wide<float, W>>& B) {
     MovedArms<Wide<float, W>> now = update_displacement<W, P>(c, bodies.state, t2);
-    if (mask_bits(now.turned > c.turn_limit)) {
+    if (mask_bits(maximum(now.turned - c.turn_limit, now.swung) > splat<Wide<float, W>>(0.0f))) {
         now = turn_row<W, P>(c, now, bodies, k, g, first);
         t2 = cross(c.n, c.t1);
         B = load_velocity_at<W>(bodies.state, c.b);

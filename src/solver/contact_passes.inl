@@ -174,7 +174,7 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
     Vec3T<F> t2 = cross(c.n, c.t1), linear, angular;
     F change[P];
     if constexpr (pass == Pass::warm_start) {
-        MovedArms<F> now{c.ra, c.rb, c.start_slip, splat<F>(0.0f)};
+        MovedArms<F> now{c.ra, c.rb, c.start_slip, splat<F>(0.0f), splat<F>(0.0f)};
         if (k.moved) now = update_displacement<W, P>(c, states, t2);
         for (int j = 0; j < P; ++j) change[j] = c.p[j].impulse;
         apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);

@@ -47,6 +47,11 @@ struct PatchFriction<F, 1> {
 // Squares of the sine of half an angle, see MovedArms::turned: from 0.07 rad on a row of corners and a face turns with
 // its bodies, all others get new masses from 0.2 rad on.
 inline constexpr float near_turn = 1.2e-3f, far_turn = 0.01f;
+// As far_turn, for rows of two balls; and what tells that such a row follows them.
+inline constexpr float turn_of_balls = 0.0101f, following_balls = -2.0f;
+// Square of the growth of an arm, in parts of its length, from which on a row gets new masses, and one of balls a new
+// normal.
+inline constexpr float far_swing = 0.04f;
 
 template <int W, int P>
 struct alignas(64) ContactRow {
@@ -66,7 +71,7 @@ struct alignas(64) ContactRow {
     // Read by relax alone.
     Vec3T<F> ra, rb;  // arms of the centre at the start of the step
     F radius_a, radius_b;
-    F turn_limit;         // how far a body may turn before turn_row() is called, see MovedArms; -1 when the row turns
+    F turn_limit;         // how far a body may turn before turn_row() is called, see MovedArms; negative when the row turns
     Vec3T<F> start_slip;  // relative velocity of the centre at the start of the step
     Vec3T<F> start_turn;  // angular velocity then of the bodies whose arms move, weighted by how much they do
     F static_friction, dynamic_friction;
@@ -305,13 +310,18 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     int live = group.count - first < W ? group.count - first : W;
     RecordQuads<W> record{floats_of(records), {}};
     F sharp = zero;  // 1 where corners of one body meet a face of the other
+    F balls = zero;  // and where two balls meet
+    F swift = zero;  // and where impacts are handled whatever the restitution
     int32_t body_a[W], body_b[W];
     for (int l = 0; l < W; ++l) {
         int32_t i = static_cast<int32_t>(group.order[first + (l < live ? l : 0)]);
         record.index[l] = i;
         body_a[l] = l < live ? records[i].body_a : group.filler;
         body_b[l] = l < live ? records[i].body_b : group.filler;
-        if (!group.rolling && (records[i].flags & contact_sharp)) set_lane(sharp, l, 1.0f);
+        const uint32_t flags = records[i].flags;
+        if (!group.rolling && (flags & contact_sharp)) set_lane(sharp, l, 1.0f);
+        if (flags & contact_balls) set_lane(balls, l, 1.0f);
+        if (flags & contact_swift) set_lane(swift, l, 1.0f);
         c.a[l] = 8 * body_a[l];
         c.b[l] = 8 * body_b[l];
     }
@@ -321,11 +331,12 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     c.static_friction = m.head[3];
     c.dynamic_friction = m.friction[7];
     c.radius_a = m.tail[0], c.radius_b = m.tail[1], c.follow = m.tail[2];
-    c.bounce_speed = select(m.tail[3] > zero, splat<F>(-1.0f), splat<F>(-1e30f));
+    c.bounce_speed = select(maximum(m.tail[3], swift) > zero, splat<F>(-1.0f), splat<F>(-1e30f));
     c.push_speed = m.tail[7];
     sharp = select(absolute(c.follow - splat<F>(0.5f)) > splat<F>(0.25f), sharp, zero);
     sharp = select(maximum(c.radius_a, c.radius_b) > zero, zero, sharp);
     c.turn_limit = select(sharp > zero, splat<F>(near_turn), splat<F>(far_turn));
+    if constexpr (P == 1) c.turn_limit = select(balls > zero, splat<F>(turn_of_balls), c.turn_limit);
     c.lever_a = cross(c.ra, c.n);
     c.lever_b = cross(c.rb, c.n);
     for (int j = 0; j < P; ++j) {

@@ -12,6 +12,8 @@ namespace {
 constexpr int max_sweeps = 8;
 // Points closer than this count as touching already: positions a metre from the body's centre resolve 1e-7 m.
 constexpr float touching = 1e-6f;
+// What rounding may add to a distance, in parts of those that it is the sum of.
+constexpr float rounding_share = 1e-5f;
 
 Vec3 load(const float* p) { return {p[0], p[1], p[2]}; }
 void add(float* p, Vec3 v) { p[0] += v.x, p[1] += v.y, p[2] += v.z; }
@@ -195,6 +197,18 @@ Impact impact_of(float gap, float approach, float acceleration) {
     return denominator > 0.0f ? Impact{2.0f * gap / denominator, speed} : Impact{};
 }
 
+bool turns_with_face(const ContactRecord& r) { return (r.flags & contact_sharp) != 0 && r.follow != 0.5f; }
+
+// When two balls whose centres are `way` apart and move by `v` against each other are `radii` apart, or nearest, within
+// [0, h], without acceleration.
+float time_to_meet(Vec3 way, Vec3 v, float radii, float h) {
+    const float speed2 = length_squared(v), closing = -dot(way, v), beyond = length_squared(way) - radii * radii;
+    if (!(closing > 0.0f) || !(beyond > 0.0f)) return 0.0f;
+    const float discriminant = closing * closing - speed2 * beyond;
+    const float time = discriminant > 0.0f ? beyond / (closing + square_root(discriminant)) : closing / speed2;
+    return minimum(time, h);
+}
+
 // One point of a manifold; true where it bounced.
 bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPointRecord& point,
                   float tangential_restitution, const SubstepConstants& k, int sweep) {
@@ -204,12 +218,18 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
     Side a(bodies, r.body_a, ra0 - (half_gap + r.radius_a) * n0);
     Side b(bodies, r.body_b, ra0 - offset + (half_gap + r.radius_b) * n0);
     // The normal of a face that a corner meets turns with its body, see turn_row().
-    const bool on_face = (r.flags & contact_sharp) != 0 && r.follow != 0.5f;
-    const Vec3 n = on_face ? rotate((r.follow > 0.5f ? a : b).now.dq, n0) : n0;
+    Vec3 n = turns_with_face(r) ? rotate((r.follow > 0.5f ? a : b).now.dq, n0) : n0;
     const Vec3 apart = offset + (load(b.state->dp) - load(a.state->dp));
     const Vec3 turned = (b.now.core - b.core0) - (a.now.core - a.core0);
-    const float gap = maximum(dot(n, n0) * point.separation + dot(n, (apart - offset) + turned), 0.0f);
+    float gap = maximum(dot(n, n0) * point.separation + dot(n, (apart - offset) + turned), 0.0f);
     const Vec3 v = (b.now.v + cross(b.now.w, b.now.core)) - (a.now.v + cross(a.now.w, a.now.core));
+    const bool balls = (r.flags & contact_balls) != 0;
+    if (balls) {
+        const float radii = r.radius_a + r.radius_b;
+        const Vec3 way = apart + b.now.core - a.now.core, met = way + time_to_meet(way, v, radii, k.h) * v;
+        n = normalize(met, n0);
+        gap = maximum(dot(n, way) - radii, 0.0f);
+    }
     const Impact first = impact_of(gap, dot(v, n), dot(b.core_acceleration() - a.core_acceleration(), n));
     if (first.time > k.h || !(first.speed >= k.bounce_speed)) return false;
 
@@ -222,6 +242,7 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
         m.b = b.after(time, k.first);
         const Vec3 drift = b.now.v - a.now.v, acceleration = b.acceleration() - a.acceleration();
         between = apart + (time * drift + (0.5f * time * time) * acceleration);
+        if (balls) n = normalize(between + m.b.core - m.a.core, n);
         // Both get the impulse at one world point, on the surface of the body that it rides on.
         const Vec3 on_b = m.b.core - r.radius_b * n, from_a = on_b + between - (m.a.core + r.radius_a * n);
         m.b.arm = on_b - (1.0f - r.follow) * (from_a - dot(from_a, n) * n);
@@ -229,7 +250,7 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
         // What turns follows no parabola: twice more by Newton's rule.
         const float off = dot(from_a, n), approach = dot(m.slip(), n);
         const bool turning = time > 0.0f && (a.turns() || b.turns());
-        if (!turning || times == 2 || !(absolute(off) > touching) || !(approach < 0.0f)) break;
+        if (!(turning || balls) || times == 2 || !(absolute(off) > touching) || !(approach < 0.0f)) break;
         time = maximum(time - off / approach, 0.0f);
         if (time > k.h) return false;
     }
@@ -244,30 +265,72 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
     return true;
 }
 
-// Whether no point of a manifold can approach as fast as bounces do: most have bodies that hardly move.
-bool too_slow(const SolverBodies& bodies, const ContactRecord& r, const SubstepConstants& k) {
-    float fastest = 0.0f;
-    for (int side = 0; side < 2; ++side) {
-        const auto body = static_cast<size_t>(side == 0 ? r.body_a : r.body_b);
-        const BodyState& state = bodies.state[body];
-        const BodyStart& start = bodies.start[body];
-        const float v = length(load(start.v) + load(state.v)), w = length(load(start.w) + load(state.w));
-        if (v + w == 0.0f && !(state.inverse_mass > 0.0f)) continue;
-        float reach = 0.0f;
-        for (int j = 0; j < r.point_count; ++j) {
-            const Vec3 arm = load(r.points[j].position) - (side == 0 ? Vec3{} : load(r.arm_offset));
-            reach = maximum(reach, length(arm) + absolute(r.points[j].separation) + r.radius_a + r.radius_b);
-        }
-        const BodyBlock& block = bodies.blocks[body / block_bodies];
-        const size_t at = body % block_bodies;
-        const Vec3 push{block.acceleration[0][at], block.acceleration[1][at], block.acceleration[2][at]};
-        const float pull = state.inverse_mass > 0.0f ? length(push) : 0.0f;
-        fastest += v + w * reach + k.h * (pull + 2.0f * w * w * reach * maximum(block.anisotropy[at], 1.0f));
+// Whether a contact may meet faster than bounces do within the substep, by bounds that hold for all its points: how far
+// these have turned with their bodies, and how fast and how much faster they can become.
+bool may_meet(const SolverBodies& bodies, const BouncingContact& c, const SubstepConstants& k) {
+    const auto a = static_cast<size_t>(c.a), b = static_cast<size_t>(c.b);
+    const BodyState &sa = bodies.state[a], &sb = bodies.state[b];
+    const BodyStart &ta = bodies.start[a], &tb = bodies.start[b];
+    const Vec3 v = (load(tb.v) + load(sb.v)) - (load(ta.v) + load(sa.v)), n = load(c.normal);
+    const Vec3 moved = load(sb.dp) - load(sa.dp);
+    float speed = 0.0f, pull = c.pull, turned_a = 0.0f, turned_b = 0.0f;
+    if (c.reach_a + c.reach_b > 0.0f) {
+        const float wa2 = length_squared(load(ta.w) + load(sa.w)), wb2 = length_squared(load(tb.w) + load(sb.w));
+        speed = square_root(wa2) * c.reach_a + square_root(wb2) * c.reach_b;
+        pull += c.pull_a * wa2 + c.pull_b * wb2;
+        turned_a = 2.0f * length(load(sa.dq)), turned_b = 2.0f * length(load(sb.dq));
     }
-    return fastest < k.bounce_speed;
+    const float swing = turned_a * c.reach_a + turned_b * c.reach_b;
+    const float unsure = touching + rounding_share * (length(moved) + c.reach_a + c.reach_b);
+    const float faster = k.h * pull;
+    if (c.radii > 0.0f) {
+        const Vec3 way = n + moved, nearest = way + time_to_meet(way, v, c.radii, k.h) * v;
+        return length(nearest) - c.radii - swing - unsure <= k.h * (speed + faster) &&
+               length(v) + speed + faster >= k.bounce_speed;
+    }
+    const float leaned = c.face_a * turned_a + c.face_b * turned_b;
+    const float approach = (leaned * length(v) - dot(n, v)) + (speed + faster);
+    const float gap = (c.gap + dot(n, moved)) - swing - leaned * (length(moved) + swing + c.span) - unsure;
+    return approach >= k.bounce_speed && gap <= k.h * approach;
 }
 
 }  // namespace
+
+void prepare_bouncing(const SolverBodies& bodies, const ContactRecord* records, BouncingContact& c) {
+    const ContactRecord& r = records[c.record];
+    c.a = r.body_a, c.b = r.body_b;
+    const Vec3 n = load(r.normal), offset = load(r.arm_offset);
+    const bool on_face = turns_with_face(r), balls = (r.flags & contact_balls) != 0;
+    c.gap = far_separation;
+    c.span = c.reach_a = c.reach_b = 0.0f;
+    for (int j = 0; j < r.point_count; ++j) {
+        const Vec3 ra = load(r.points[j].position);
+        const float s = r.points[j].separation, half_gap = 0.5f * s;
+        c.gap = minimum(c.gap, s);
+        c.span = maximum(c.span, absolute(s));
+        c.reach_a = maximum(c.reach_a, length(ra - (half_gap + r.radius_a) * n));
+        c.reach_b = maximum(c.reach_b, length(ra - offset + (half_gap + r.radius_b) * n));
+    }
+    c.radii = balls ? r.radius_a + r.radius_b : 0.0f;
+    const Vec3 way = balls ? (c.radii + c.gap) * n : n;
+    if (balls) {  // of one about whose centre its body turns no point moves, rounding aside
+        if (c.reach_a < 1e-5f * c.radii) c.reach_a = 0.0f;
+        if (c.reach_b < 1e-5f * c.radii) c.reach_b = 0.0f;
+    }
+    for (int i = 0; i < 3; ++i) c.normal[i] = component(way, i);
+    c.face_a = on_face && r.follow > 0.5f ? 1.0f : 0.0f;
+    c.face_b = on_face && r.follow <= 0.5f ? 1.0f : 0.0f;
+    c.pull = 0.0f;
+    for (int side = 0; side < 2; ++side) {
+        const auto body = static_cast<size_t>(side == 0 ? c.a : c.b);
+        const BodyBlock& block = bodies.blocks[body / block_bodies];
+        const size_t at = body % block_bodies;
+        const Vec3 push{block.acceleration[0][at], block.acceleration[1][at], block.acceleration[2][at]};
+        if (bodies.state[body].inverse_mass > 0.0f) c.pull += length(push);
+        (side == 0 ? c.pull_a : c.pull_b) =
+            2.0f * (side == 0 ? c.reach_a : c.reach_b) * maximum(block.anisotropy[at], 1.0f);
+    }
+}
 
 bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, BouncingList bouncing,
                      const SubstepConstants& k, int substep) {
@@ -277,14 +340,14 @@ bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, Bouncin
         bool bounced = false;
         const int number = first_sweep + sweep;
         for (int i = 0; i < bouncing.count; ++i) {
-            const uint32_t record = bouncing.list[i];
-            const ContactRecord& r = records[record];
+            const BouncingContact& c = bouncing.list[i];
             // Nothing has changed where nobody was struck in the last sweep or in this one.
-            const BodyStart &a = bodies.start[static_cast<size_t>(r.body_a)],
-                            &b = bodies.start[static_cast<size_t>(r.body_b)];
-            if (sweep > 0 && a.struck < number - 1 && b.struck < number - 1) continue;
-            if (too_slow(bodies, r, k)) continue;
-            const float back = bouncing.extras ? bouncing.extras[record].tangential_restitution : 0.0f;
+            if (sweep > 0 && bodies.start[static_cast<size_t>(c.a)].struck < number - 1 &&
+                bodies.start[static_cast<size_t>(c.b)].struck < number - 1)
+                continue;
+            if (!may_meet(bodies, c, k)) continue;
+            const ContactRecord& r = records[c.record];
+            const float back = bouncing.extras ? bouncing.extras[c.record].tangential_restitution : 0.0f;
             for (int j = 0; j < r.point_count; ++j) bounced |= bounce_point(bodies, r, r.points[j], back, k, number);
         }
         any |= bounced;

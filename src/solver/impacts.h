@@ -9,12 +9,31 @@
 
 namespace lendulet {
 
-// Records that can bounce, in order, and what some of them have beside; null where none has.
+// What it takes to tell, without reading records, that a contact meets nothing in a substep: most do not.
+struct alignas(64) BouncingContact {
+    explicit BouncingContact(uint32_t of_record) : record(of_record) {}
+
+    uint32_t record;
+    int32_t a = 0, b = 0;
+    float gap = 0.0f;        // least separation of its points at the start of the step, m
+    float normal[3] = {};    // or the way between the centres of two balls, m
+    float radii = 0.0f;      // of two balls, m; 0: others
+    float reach_a = 0.0f, reach_b = 0.0f;  // how far the points are from the axes about which they turn, m
+    float pull = 0.0f;                     // the bodies' accelerations, m/s^2
+    float pull_a = 0.0f, pull_b = 0.0f;    // and by how much turning accelerates them: times the square of w, m
+    float face_a = 0.0f, face_b = 0.0f;    // 1 where the normal turns with this body
+    float span = 0.0f;                     // largest separation, m
+};
+
+// Contacts that can bounce or are swift, in order, and what some of them have beside, by record; null where none has.
 struct BouncingList {
-    const uint32_t* list;
+    const BouncingContact* list;
     int count;
     const ContactExtra* extras;
 };
+
+// Fills in all but `record`, which is given; at the start of a step, when bodies are in their blocks.
+void prepare_bouncing(const SolverBodies& bodies, const ContactRecord* records, BouncingContact& contact);
 
 // Finds the points that in this substep, the given one of the step, will meet faster than k.bounce_speed, gives both
 // bodies Newton's impulse with Coulomb friction on the whole of it (restitution included; with tangential restitution

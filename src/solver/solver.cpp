@@ -106,7 +106,7 @@ size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const 
     schedule_.build(sorter, ends, extras, list, count, bodies, cut, kernels_, scalar_);
     bouncing_.clear();
     for (int i = 0; i < count; ++i)
-        if (ends[i].bounces) bouncing_.push_back(list[i]);
+        if (ends[i].bounces) bouncing_.push_back(BouncingContact(list[i]));
     return schedule_.row_bytes;
 }
 
@@ -132,6 +132,9 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
     SubstepConstants k = substep_constants(settings);
     k.joints = !joints_.empty();
     for_each_tile(tasks, range, [&](int, BodyRange r) { kernels_.begin_step(bodies, r.begin, r.end); });
+    tasks.for_each(bouncing_.count(), contacts_per_part, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) prepare_bouncing(bodies, records, bouncing_[static_cast<size_t>(i)]);
+    });
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const SubstepConstants before = k;
         k.first = substep == 0;

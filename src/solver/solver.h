@@ -13,6 +13,7 @@
 #include "solver/bodies.h"
 #include "solver/colouring.h"
 #include "solver/contact.h"
+#include "solver/impacts.h"
 #include "solver/joints/joint_solver.h"
 #include "solver/kernels.h"
 
@@ -106,7 +107,7 @@ private:
     void pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
 
     ColourSchedule schedule_;
-    Array<uint32_t> bouncing_;  // records that can bounce
+    Array<BouncingContact> bouncing_;
     const ContactExtra* extras_ = nullptr;
     JointSolver joints_;
     const SolverKernels& kernels_;

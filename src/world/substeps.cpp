@@ -218,7 +218,7 @@ void survey_contacts(WorldData& world) {
             TouchingBodies& t = world.touching_bodies[i];
             t.impulse = impulse_of(r);
             t.a_above = dot(Vec3{r.normal[0], r.normal[1], r.normal[2]}, world.config.gravity) > 0.0f;
-            t.bounces = r.restitution > 0.0f;
+            t.bounces = r.restitution > 0.0f || (r.flags & contact_swift) != 0;
             t.kind = contact_kind(r);
         }
     });

@@ -18,6 +18,9 @@ constexpr float kept_share = 0.25f;
 uint32_t collider_a(const ColliderPair& p) { return p.flipped ? p.b : p.a; }
 uint32_t collider_b(const ColliderPair& p) { return p.flipped ? p.a : p.b; }
 
+// A contact is swift where in a substep the arm of one of its bodies grows by more than this part of what that reaches.
+constexpr float swift_share = 0.5f;
+
 // Collided by the frames, of which one line tells all.
 CollidePair collide_input(const WorldData& world, const ColliderPair& p, float margin) {
     uint32_t a = collider_a(p), b = collider_b(p);
@@ -38,7 +41,7 @@ CollidePair collide_input(const WorldData& world, const ColliderPair& p, float m
 class Chunk {
 public:
     Chunk(WorldData& world, NarrowScratch& scratch, float dt, float scale)
-        : world_(world), scratch_(scratch), scale_(scale) {
+        : world_(world), scratch_(scratch), h_(dt / static_cast<float>(world.config.solver_steps)), scale_(scale) {
         scratch_.motion.frames = scratch_.kept.frames = world.frames.data();
         scratch_.motion.poses = scratch_.kept.poses = world.pairs.poses.data();
         scratch_.motion.dt = dt;
@@ -168,6 +171,7 @@ private:
             kept.pose[k] = scratch_.motion.pose[i];
             kept.record[k] = static_cast<int32_t>(p.first_record + m);
             ContactRecord& r = world_.records[p.first_record + m];
+            r.flags &= ~contact_swift;
             if (scale_ != 1.0f) scale_impulses(r, scale_);
         }
     }
@@ -217,6 +221,16 @@ private:
             clear_impulses(r);
         }
         r.pair = index;
+        tell_speed(p, r, a, b);
+    }
+
+    // Bodies whose arms stay are those whose surface the points ride on.
+    void tell_speed(const ColliderPair& p, ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b) const {
+        const Vec3 v = Vec3{b.velocity[0], b.velocity[1], b.velocity[2]} - Vec3{a.velocity[0], a.velocity[1], a.velocity[2]};
+        const float way2 = (h_ * h_) * length_squared(v);
+        auto grows = [&](float reach) { return way2 > (swift_share * swift_share) * (reach * reach); };
+        const bool swift = (!p.fixed_a && r.follow > 0.0f && grows(a.reach)) || (r.follow < 1.0f && grows(b.reach));
+        r.flags = swift ? r.flags | contact_swift : r.flags & ~contact_swift;
     }
 
     void collide_mesh(ColliderPair& p, uint32_t index, float margin) {
@@ -240,6 +254,7 @@ private:
             if (k < p.count) warm_start(r, old[k], a, b, scale_);
             else clear_impulses(r);
             r.pair = index;
+            tell_speed(p, r, a, b);
         }
         finish(p, index, count, margin, cache.clearance);
         mark_covered(world_, p);
@@ -323,6 +338,7 @@ private:
     WorldData& world_;
     NarrowScratch& scratch_;
     int boxed_ = 0;  // pairs in the lists of boxes
+    float h_;        // longest substep, s
     float scale_;
 };
 

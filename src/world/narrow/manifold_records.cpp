@@ -47,7 +47,9 @@ void prepare_record(const WorldData& world, const ColliderPair& p, ContactRecord
     write_surface(combine(world.colliders.surface[p.a], world.colliders.surface[p.b]), r);
     r.separation_speed = p.fixed_a ? world.config.static_separation_speed : world.config.rigid_separation_speed;
     const bool sharp = is_sharp(world.colliders.geometry[p.a]) && is_sharp(world.colliders.geometry[p.b]);
-    r.flags = (p.flipped ? contact_flipped : 0u) | (sharp ? contact_sharp : 0u);
+    const bool balls = world.colliders.geometry[p.a].kind == GeometryKind::point &&
+                       world.colliders.geometry[p.b].kind == GeometryKind::point;
+    r.flags = (p.flipped ? contact_flipped : 0u) | (sharp ? contact_sharp : 0u) | (balls ? contact_balls : 0u);
 }
 
 void set_surface(const WorldData& world, const ColliderPair& p, ContactRecord& r) {
