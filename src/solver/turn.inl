@@ -52,13 +52,12 @@ LENDULET_FORCE_INLINE QuatT<F> long_turn_quaternion(Vec3T<F> turn) {
     F turns = (half * splat<F>(0.15915494f) + to_whole) - to_whole;
     F r = (half - turns * splat<F>(6.28125f)) - turns * splat<F>(1.9353072e-3f);  // 2 pi in two parts
     F x = splat<F>(0.25f) * r, y = x * x;
-    F s = x * (one + y * (splat<F>(-1.0f / 6.0f) +
-                          y * (splat<F>(1.0f / 120.0f) +
-                               y * (splat<F>(-1.0f / 5040.0f) + y * splat<F>(1.0f / 362880.0f)))));
-    F c = one + y * (splat<F>(-0.5f) +
-                     y * (splat<F>(1.0f / 24.0f) +
-                          y * (splat<F>(-1.0f / 720.0f) +
-                               y * (splat<F>(1.0f / 40320.0f) + y * splat<F>(-1.0f / 3628800.0f)))));
+    F s = x * (one +
+               y * (splat<F>(-1.0f / 6.0f) +
+                    y * (splat<F>(1.0f / 120.0f) + y * (splat<F>(-1.0f / 5040.0f) + y * splat<F>(1.0f / 362880.0f)))));
+    F c = one + y * (splat<F>(-0.5f) + y * (splat<F>(1.0f / 24.0f) +
+                                            y * (splat<F>(-1.0f / 720.0f) +
+                                                 y * (splat<F>(1.0f / 40320.0f) + y * splat<F>(-1.0f / 3628800.0f)))));
     for (int i = 0; i < 2; ++i) {
         F doubled = two * s * c;
         c = one - two * s * s;

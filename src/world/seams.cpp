@@ -63,8 +63,8 @@ struct Floor {
     using F = Wide<float, 4>;
     Touch touch;
     Vec3 normal;
-    Vec3T<F> points;       // on the surface of the fixed side, where it was when the manifold was made; the first again
-                           // where there are fewer
+    Vec3T<F> points;  // on the surface of the fixed side, where it was when the manifold was made; the first again
+                      // where there are fewer
     float height, overlap;  // along the normal; how deep the shape is below it
 
     Floor(const WorldData& world, const Touch& t) : touch(t) {

@@ -20,7 +20,7 @@ struct MeshFilterBatch {
     float lean[room];  // most that the direction of the shortest distance leans across a side, as sine
 
     const Geometry* shape;
-    const Vec3* hull;            // its corners, where it is a hull of few,
+    const Vec3* hull;           // its corners, where it is a hull of few,
     const HullFace* hull_face;  // and its faces
     int hull_count, hull_faces;
     Mat3 to_shape;                // rows: the axes of contacts in those of the mesh
@@ -33,12 +33,12 @@ struct MeshFilterBatch {
     // Out: those that may touch, or whose plane the shape is beyond, one after the other in their order, in the axes of
     // contacts and relative to the shape's position.
     int live;
-    uint32_t number[room];                    // of the triangle among those tested
-    float p[3][3][room], normal[3][room];     // by corner and component; towards the shape's centre
-    float flags[room];                        // as whole numbers, see below
-    float face[room];                         // the number of the face that looks at it: of a box or a hull of few
-    float lowest[3][room];                    // where the core's lowest point along the normal is,
-    bool has_lowest;                          // of shapes of which that is found on the way
+    uint32_t number[room];                 // of the triangle among those tested
+    float p[3][3][room], normal[3][room];  // by corner and component; towards the shape's centre
+    float flags[room];                     // as whole numbers, see below
+    float face[room];                      // the number of the face that looks at it: of a box or a hull of few
+    float lowest[3][room];                 // where the core's lowest point along the normal is,
+    bool has_lowest;                       // of shapes of which that is found on the way
     enum Flag {
         apart = 1,         // the core is farther than the limit from it, though it crosses its plane
         behind = 2,        // the shape's centre is behind it
@@ -84,7 +84,9 @@ public:
     const MeshFilterBatch& batch() const { return batch_; }
 
 private:
-    static Vec3 at(const float (&rows)[3][MeshFilterBatch::room], int i) { return {rows[0][i], rows[1][i], rows[2][i]}; }
+    static Vec3 at(const float (&rows)[3][MeshFilterBatch::room], int i) {
+        return {rows[0][i], rows[1][i], rows[2][i]};
+    }
     void load(const uint32_t* triangles, int count);
 
     const TriangleSurface& surface_;

@@ -93,8 +93,8 @@ LENDULET_FORCE_INLINE Vec3T<F> load(const float (&rows)[3][MeshFilterBatch::room
     return {load_wide<F>(rows[0] + first), load_wide<F>(rows[1] + first), load_wide<F>(rows[2] + first)};
 }
 
-// The number of the face that looks along a unit direction, of which best_face() gives all such directions the same; -1:
-// of other shapes.
+// The number of the face that looks along a unit direction, of which best_face() gives all such directions the same;
+// -1: of other shapes.
 template <class F>
 LENDULET_FORCE_INLINE F facing(const MeshFilterBatch& b, Vec3T<F> d) {
     const F zero{}, one = splat<F>(1.0f), two = splat<F>(2.0f);
@@ -117,7 +117,8 @@ LENDULET_FORCE_INLINE F facing_hull(const MeshFilterBatch& b, Vec3T<F> d, const 
     F number = splat<F>(-1.0f), best = splat<F>(-3e38f);
     for (int i = 0; i < b.hull_faces; ++i) {
         const Vec3T<F> normal = splat<F>(b.hull_face[i].normal);
-        const F along = dot(normal, d), nearest = minimum(minimum(dot(normal, p[0]), dot(normal, p[1])), dot(normal, p[2]));
+        const F along = dot(normal, d),
+                nearest = minimum(minimum(dot(normal, p[0]), dot(normal, p[1])), dot(normal, p[2]));
         auto better = along > best;
         best = select(better, along, best), number = select(better, splat<F>(static_cast<float>(i)), number);
         within_limit = within_limit & (nearest <= splat<F>(b.hull_face[i].offset + b.limit));

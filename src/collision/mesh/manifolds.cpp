@@ -116,8 +116,7 @@ int MeshManifolds::write(const Placing& placing, Manifold* out, int capacity) {
         Group& group = groups_[order[k]];
         if (group.count > 1) reduce(group);
         Manifold& m = out[k];
-        m.normal =
-            group.face ? rotate(placing.from_mesh, group.front) : turn * group.normal;
+        m.normal = group.face ? rotate(placing.from_mesh, group.front) : turn * group.normal;
         m.count = group.count;
         for (int i = 0; i < group.count; ++i) {
             const MeshPoint& p = group.points[i];

@@ -36,8 +36,8 @@ public:
     explicit MeshManifolds(float resolution) : near_squared_(resolution * resolution) {}
 
     void add(const TriangleContact& contact);
-    // Writes at most `capacity` manifolds, the deepest where there are more, turned from the axes of the mesh and of the
-    // contacts to others and relative to a point from which the shape is at `position`.
+    // Writes at most `capacity` manifolds, the deepest where there are more, turned from the axes of the mesh and of
+    // the contacts to others and relative to a point from which the shape is at `position`.
     struct Placing {
         Quat from_mesh, from_contact;
         Vec3 position;

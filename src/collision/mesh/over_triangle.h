@@ -38,7 +38,8 @@ struct FaceOverTriangle {
     Point points[max_clipped_points];
 };
 
-// Triangles side by side, each with the face that looks at it; in the axes of contacts, relative to the shape's position.
+// Triangles side by side, each with the face that looks at it; in the axes of contacts, relative to the shape's
+// position.
 struct OverTriangleBatch {
     static constexpr int capacity = 16;  // whole blocks of the widest lanes
     static constexpr int most_corners = 8;
@@ -68,8 +69,8 @@ struct OverTriangleBatch {
     void set_face(int i, const ShapeFace& face);
     bool lowest_over(int i) const { return (bits[i] >> lowest_is_over & 1) != 0; }
     uint8_t beyond(int i) const { return static_cast<uint8_t>(bits[i] >> first_beyond & 7); }
-    // What it found of number i, which is `t`. A corner of the shape has the same name over every triangle, so that it keeps it while
-    // it slides.
+    // What it found of number i, which is `t`. A corner of the shape has the same name over every triangle, so that it
+    // keeps it while it slides.
     void read(int i, const Triangle& t, const Face& face, const TriangleSurface& surface, FaceOverTriangle& out) const;
 };
 

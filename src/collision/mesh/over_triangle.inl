@@ -88,8 +88,7 @@ struct Block {
         const F low = dot(normal, vertex[0]), height = dot(normal, p) - low, next_height = dot(normal, next) - low,
                 rise = next_height - height, limit = splat<F>(b.limit), count = load_wide<F>(b.corner_count + first);
         auto crosses = leaves > none;
-        const F first_height = height + begin * rise,
-                last_height = select(crosses, height + end * rise, next_height);
+        const F first_height = height + begin * rise, last_height = select(crosses, height + end * rise, next_height);
         store_wide(b.side[2 * k] + first, enters);
         store_wide(b.side[2 * k + 1] + first, leaves);
         put(2 * k, p + begin * along - first_height * normal, first_height);
@@ -110,8 +109,7 @@ struct Block {
         for (int k = 0; k < b.corners; ++k) {
             const V p = load<F>(b.corner[k], first), inwards = cross(load<F>(b.corner[k + 1], first) - p, normal);
             auto there = splat<F>(static_cast<float>(k)) < count;
-            for (int c = 0; c < 3; ++c)
-                covered[c] = covered[c] & ~(there & (dot(vertex[c] - p, inwards) < zero));
+            for (int c = 0; c < 3; ++c) covered[c] = covered[c] & ~(there & (dot(vertex[c] - p, inwards) < zero));
         }
         for (int c = 0; c < 3; ++c) {
             const int number = OverTriangleBatch::first_covered + c;

@@ -27,8 +27,8 @@ constexpr float level = MeshQuery::level;
 constexpr float flat = 0.998f;
 
 constexpr int no_face = -1;
-// Before closest points are sought otherwise; of the shape's size, the least distance at which they are, and how far what
-// is proven may be off.
+// Before closest points are sought otherwise; of the shape's size, the least distance at which they are, and how far
+// what is proven may be off.
 constexpr int most_steps = 3;
 constexpr float least_between = 0.01f, proven_gap = 1e-6f;
 
@@ -434,8 +434,12 @@ void collide_batch(MeshCollision& q, const uint32_t* triangles, MeshFilter& foun
         const float height = batch.lowest_height[k];
         if (height > batch.limit) continue;
         const uint8_t beyond = found.has_lowest() ? found.edges_beyond(i) : batch.beyond(k);
-        const FaceJob job{left_triangle(q, triangles, found, i), q.face_at(q.face_of[k]).face, found.lowest(i), height,
-                          found.is_apart(i), beyond};
+        const FaceJob job{left_triangle(q, triangles, found, i),
+                          q.face_at(q.face_of[k]).face,
+                          found.lowest(i),
+                          height,
+                          found.is_apart(i),
+                          beyond};
         TriangleContact contact;
         convex_triangle(q, job, k, contact);
         manifolds.add(contact);

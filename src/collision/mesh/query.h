@@ -31,8 +31,9 @@ struct MeshQuery {
           surface(*p.a),
           shape(*p.b),
           turn(conjugate(p.rotation_a) * p.rotation_b),
-          to_contact(shape.kind == GeometryKind::point ? Mat3{{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}}
-                                                       : rotation_matrix(conjugate(turn))),
+          to_contact(shape.kind == GeometryKind::point
+                         ? Mat3{{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}}
+                         : rotation_matrix(conjugate(turn))),
           position(rotate_inverse(p.rotation_a, p.offset)),
           centre(shape.kind == GeometryKind::hull ? rotate(turn, shape.hull->centroid) : Vec3{}),
           heart(shape.kind == GeometryKind::hull ? shape.hull->centroid : Vec3{}) {

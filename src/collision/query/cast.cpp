@@ -314,8 +314,12 @@ bool cast_triangles(const Geometry& mesh, const Motion& motion_a, const Geometry
     bool any = false;
     double limit = max_fraction;
     const TriangleSurface surface(mesh);
-    const SolidPath path{from, along, half, mover.turns() ? reach : -1.0,
-                         path_slack * reach + near_of_larger_turning * length(along), mover,
+    const SolidPath path{from,
+                         along,
+                         half,
+                         mover.turns() ? reach : -1.0,
+                         path_slack * reach + near_of_larger_turning * length(along),
+                         mover,
                          exact_rotation(turn)};
     walk_along(surface, {from, along, half}, limit, [&](uint32_t index) {
         Vec3 corners[3];

@@ -226,7 +226,8 @@ private:
 
     // Bodies whose arms stay are those whose surface the points ride on.
     void tell_speed(const ColliderPair& p, ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b) const {
-        const Vec3 v = Vec3{b.velocity[0], b.velocity[1], b.velocity[2]} - Vec3{a.velocity[0], a.velocity[1], a.velocity[2]};
+        const Vec3 v =
+            Vec3{b.velocity[0], b.velocity[1], b.velocity[2]} - Vec3{a.velocity[0], a.velocity[1], a.velocity[2]};
         const float way2 = (h_ * h_) * length_squared(v);
         auto grows = [&](float reach) { return way2 > (swift_share * swift_share) * (reach * reach); };
         const bool swift = (!p.fixed_a && r.follow > 0.0f && grows(a.reach)) || (r.follow < 1.0f && grows(b.reach));
