@@ -193,7 +193,9 @@ TEST(Casts, OverAMeshAreThoseOverItsTriangles) {
             }
             const bool met = cast_shapes(mesh.geometry, still, b.geometry, moving, 1.0, hit);
             EXPECT_EQ(met, first.fraction <= 1.0) << k.name << " " << i;
-            if (met) EXPECT_NEAR(hit.fraction, first.fraction, 1e-4) << k.name << " " << i;
+            if (met) {
+                EXPECT_NEAR(hit.fraction, first.fraction, 1e-4) << k.name << " " << i;
+            }
             ++(met ? hits : misses);
         }
     }
