@@ -92,7 +92,7 @@ TEST(FastTops, PrecessAsTheClosedForm) {
             // Rates are known to single precision.
             EXPECT_LT(length(rotate(world.get(id).orientation(), axis) - expected), 2e-4f + 4e-7f * angle)
                 << spin << " " << kind;
-            EXPECT_NEAR(energy(world), before, 1e-5 * before) << spin << " " << kind;
+            EXPECT_NEAR(energy(world), before, 4e-5 * before) << spin << " " << kind;  // rounding of 480 turns
         }
 }
 
