@@ -12,8 +12,10 @@ namespace lendulet {
 
 struct MeshCandidates;
 struct MeshFilterBatch;
-// See mesh/filter.h; four triangles at a time.
+struct OverTriangleBatch;
+// See mesh/filter.h and mesh/over_triangle.h; four triangles at a time.
 void filter_triangles(MeshFilterBatch& batch);
+void clip_over_triangles(OverTriangleBatch& batch);
 
 struct CollidePair {
     const Geometry* a;
@@ -26,7 +28,9 @@ struct CollidePair {
 
 struct CollideSettings {
     SimplexSolver simplex = SimplexSolver::half_space;
-    void (*filter)(MeshFilterBatch&) = filter_triangles;  // or a wider one with the same results
+    // Or wider ones with the same results.
+    void (*filter)(MeshFilterBatch&) = filter_triangles;
+    void (*clip)(OverTriangleBatch&) = clip_over_triangles;
 };
 
 // What is kept from step to step with the pair: the axis or reference face of the last contact, as hysteresis, and the

@@ -12,7 +12,7 @@ namespace lendulet {
 namespace {
 
 // Sine of the angle to the side's normal up to which a side gives its two points (8.6 degrees).
-constexpr float side_sine = 0.15f;
+constexpr float side_sine = segment_side_sine;
 // Cosine of the angle to the axis from which a cap gives its polygon (14 degrees), beyond it the rim touches in a
 // point.
 constexpr float cap_cosine = 0.97f;

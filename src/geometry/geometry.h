@@ -76,6 +76,8 @@ InnerCore inner_core(const Geometry& g);
 // cylinder by 16 points of its rim, its side by the two ends of the line nearest to the direction. Rounded ends, rims
 // and tips give one point, segments and sides two. Planes and surfaces of triangles give none. (thesis 4.3.1)
 inline constexpr int max_face_vertices = 32;
+// Sine of the angle to the normal of a capsule's side up to which that gives its two points (8.6 degrees).
+inline constexpr float segment_side_sine = 0.15f;
 struct Face {
     int count = 0;
     union {

@@ -8,6 +8,8 @@
 #include <new>
 
 #include "geometry/triangle_surface.h"
+#include "math/wide/gather.h"
+#include "math/wide/wide.h"
 #include "world/world_data.h"
 
 namespace lendulet {
@@ -58,33 +60,36 @@ float rise_of(const WorldData& world, const Touch& t, Vec3 direction) {
 
 // The plane that a manifold keeps the moved shape above.
 struct Floor {
+    using F = Wide<float, 4>;
     Touch touch;
     Vec3 normal;
-    int count;
-    Vec3 points[4];                        // on the surface of the fixed side, where it was when the manifold was made
-    float height = 1e30f, overlap = 0.0f;  // along the normal; how deep the shape is below it
+    Vec3T<F> points;  // on the surface of the fixed side, where it was when the manifold was made; the first again
+                      // where there are fewer
+    float height, overlap;  // along the normal; how deep the shape is below it
 
     Floor(const WorldData& world, const Touch& t) : touch(t) {
         const ContactRecord& r = world.records[t.record];
         normal = {r.normal[0], r.normal[1], r.normal[2]};
-        count = r.point_count;
-        for (int j = 0; j < count; ++j) {
-            const float *x = r.points[j].position, s = world.found_separations[t.record].s[j];
-            points[j] = t.origin + Vec3{x[0], x[1], x[2]} - 0.5f * s * normal;
-            height = minimum(height, dot(normal, points[j]));
-            overlap = maximum(overlap, -s);
-        }
+        static_assert(sizeof r.points == 16 * sizeof(float));
+        constexpr int32_t rows[4] = {0, 1, 2, 3};
+        F x[4];
+        gather4<4>(r.points[0].position, rows, 4, 0, x);
+        F s = load_wide<F>(world.found_separations[t.record].s);
+        auto there = F{0.0f, 1.0f, 2.0f, 3.0f} < splat<F>(static_cast<float>(r.point_count));
+        for (F* v : {&x[0], &x[1], &x[2], &s}) *v = select(there, *v, splat<F>((*v)[0]));
+        points = {x[0], x[1], x[2]};
+        points = splat<F>(t.origin) + points - (splat<F>(0.5f) * s) * splat<F>(normal);
+        const F heights = dot(splat<F>(normal), points);
+        height = heights[0], overlap = maximum(0.0f, -s[0]);
+        for (int j = 1; j < 4; ++j) height = minimum(height, heights[j]), overlap = maximum(overlap, -s[j]);
     }
     // Whether it is above the piece of E, whose points are in it.
     bool covers(const WorldData& world, const Floor& e, float level, float radius) const {
+        const float slack = level + 2.5f * overhang * radius;
+        const F above = dot(splat<F>(normal), e.points) - splat<F>(height);
+        if (mask_bits((above > splat<F>(slack)) | (above < splat<F>(-slack - overlap))) != 0) return false;
         if (dot(normal, e.normal) < -level_of_depth) return false;
         if (length_squared(cross(normal, e.normal)) < same_normal * same_normal) return false;
-        level += rounding * max_component(absolute(e.touch.origin) + absolute(touch.origin));
-        const float slack = level + 2.5f * overhang * radius;
-        for (int j = 0; j < e.count; ++j) {
-            float above = dot(normal, e.points[j]) - height;
-            if (above > slack || above < -slack - overlap) return false;
-        }
         return rise_of(world, e.touch, normal) - height <= level;
     }
 };
@@ -101,9 +106,12 @@ float level_for(const ColliderInfo& moved) {
     return minimum(level_of_radius * moved.radius, level_of_depth * moved.depth);
 }
 
+float rounding_of(const Touch& a, const Touch& b) {
+    return rounding * max_component(absolute(a.origin) + absolute(b.origin));
+}
+
 // Whether E is nothing but the end of a piece of the floor F.
-bool is_covered(const WorldData& world, const Floor& e, const Floor& f, const ColliderInfo& moved) {
-    const float level = level_for(moved);
+bool is_covered(const WorldData& world, const Floor& e, const Floor& f, const ColliderInfo& moved, float level) {
     return f.covers(world, e, level, moved.radius) && !e.covers(world, f, level, moved.radius);
 }
 
@@ -124,8 +132,10 @@ void silence_pair(WorldData& world, uint32_t number) {
             const Floor floor(world, touch_of(world, q, k));
             for (uint32_t i = 0; i < p.count; ++i) {
                 if ((covered >> i & 1) != 0) continue;
-                if (is_covered(world, Floor(world, touch_of(world, p, i)), floor, world.colliders.info[moved]))
-                    covered |= 1u << i;
+                const ColliderInfo& info = world.colliders.info[moved];
+                const Floor end(world, touch_of(world, p, i));
+                const float level = level_for(info) + rounding_of(end.touch, floor.touch);
+                if (is_covered(world, end, floor, info, level)) covered |= 1u << i;
             }
         }
     });
@@ -144,11 +154,12 @@ void mark_covered(WorldData& world, ColliderPair& p) {
     const bool several = has_floor(p) && p.count > 1;
     for (uint32_t i = 0; several && i < p.count; ++i) new (floors + i) Floor(world, touch_of(world, p, i));
     const ColliderInfo& moved = world.colliders.info[moved_collider(p)];
+    const float level = several ? level_for(moved) + rounding_of(floors[0].touch, floors[0].touch) : 0.0f;
     p.covered = false;
     for (uint32_t i = 0; i < p.count; ++i) {
         bool covered = false;
         for (uint32_t k = 0; several && k < p.count && !covered; ++k)
-            covered = k != i && is_covered(world, floors[i], floors[k], moved);
+            covered = k != i && is_covered(world, floors[i], floors[k], moved, level);
         uint32_t& flags = world.records[p.first_record + i].flags;
         flags = covered ? flags | contact_covered : flags & ~contact_covered;
         p.covered |= covered;

@@ -8,6 +8,7 @@
 #include "collision/query/proximity.h"
 #include "family.h"
 #include "geometry/hull.h"
+#include "geometry/triangle_surface.h"
 #include "meshes.h"
 #include "oracle.h"
 #include "scale.h"
@@ -165,6 +166,41 @@ TEST(Casts, OntoPlanesAndMeshes) {
         }
     }
     EXPECT_GT(count.hits, scaled(150, 8));
+}
+
+// What is left out of a mesh could not have been met: its triangles one by one give the same.
+TEST(Casts, OverAMeshAreThoseOverItsTriangles) {
+    Random random(14);
+    Solid mesh(grid(12, 0.3f, [](float x, float z) { return 0.2f * sin_cos(2.0f * x).sin * sin_cos(3.0f * z).sin; }));
+    const TriangleSurface surface(mesh.geometry);
+    int hits = 0, misses = 0;
+    for (const Kind& k : every_kind()) {
+        Solid b(k.shape);
+        for (int i = 0; i < scaled(60, 6); ++i) {
+            Motion still, moving = random_motion(random, i % 2 == 1, false);
+            moving.pivot.y = i % 3 == 0 ? 0.9 : 0.6;
+            moving.translation.y = i % 3 == 0 ? -0.5 : -0.1;
+            CastHit hit, single, first;
+            first.fraction = 2.0;
+            for (uint32_t t = 0; t < surface.mesh()->triangles.size(); ++t) {
+                Vec3 corners[3];
+                surface.corners(t, corners);
+                Geometry core;
+                core.kind = GeometryKind::triangle;
+                core.triangle = corners;
+                if (cast_convex(core, still, b.geometry, moving, 1.0, single) && single.fraction < first.fraction)
+                    first = single;
+            }
+            const bool met = cast_shapes(mesh.geometry, still, b.geometry, moving, 1.0, hit);
+            EXPECT_EQ(met, first.fraction <= 1.0) << k.name << " " << i;
+            if (met) {
+                EXPECT_NEAR(hit.fraction, first.fraction, 1e-4) << k.name << " " << i;
+            }
+            ++(met ? hits : misses);
+        }
+    }
+    EXPECT_GT(hits, scaled(100, 10));
+    EXPECT_GT(misses, scaled(100, 10));
 }
 
 // A mesh that turns itself (on a kinematic body) against a shape that stands still.

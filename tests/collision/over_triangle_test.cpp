@@ -21,6 +21,28 @@ float distance_to(Vec3 p, float height, const Points& points, int count, Place&&
     return nearest;
 }
 
+// As number 5 of several, the others of which are turned the other way and lie elsewhere.
+void cut(const ShapeFace& face, const Triangle& t, const TriangleSurface& surface, FaceOverTriangle& out) {
+    MeshFilterBatch left{};
+    OverTriangleBatch batch;
+    left.live = 11;
+    for (int i = 0; i < left.live; ++i) {
+        const bool same = i == 5;
+        const Vec3 aside{same ? 0.0f : 0.1f * static_cast<float>(i), 0.0f, 0.0f};
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 p = t.vertices[same ? k : 2 - k] + aside;
+            left.p[k][0][i] = p.x, left.p[k][1][i] = p.y, left.p[k][2][i] = p.z;
+        }
+        left.normal[0][i] = t.normal.x, left.normal[1][i] = t.normal.y, left.normal[2][i] = t.normal.z;
+        left.flags[i] = t.from_behind == same ? static_cast<float>(MeshFilterBatch::behind) : 0.0f;
+    }
+    batch.limit = 10.0f, batch.level = 1e-4f;
+    batch.begin(left, 0);
+    for (int i = 0; i < batch.count; ++i) batch.set_face(i, face);
+    clip_over_triangles(batch);
+    batch.read(5, t, face.face, surface, out);
+}
+
 TEST(OverTriangle, FindsTheCornersThatClippingFinds) {
     TriangleMesh ground = grid(6, 0.5f, [](float x, float z) { return 0.2f * x - 0.1f * z * z; });
     const Solid mesh{Shape{ground}};
@@ -33,14 +55,13 @@ TEST(OverTriangle, FindsTheCornersThatClippingFinds) {
             const Quat turn = random.rotation();
             const Vec3 at{random.in(-1.0f, 1.0f), random.in(0.3f, 0.8f), random.in(-1.0f, 1.0f)};
             const auto index = static_cast<uint32_t>(n % 72);
-            const Triangle t = make_triangle(surface, index, at, {});
-            ShapeFace face;
-            face.face = best_face(shape.geometry, rotate_inverse(turn, -t.normal));
+            Triangle t = make_triangle(surface, index, at, {});
+            for (Vec3& v : t.vertices) v = rotate_inverse(turn, v);
+            t.normal = rotate_inverse(turn, t.normal);
+            const ShapeFace face(shape.geometry, -t.normal);
             if (face.face.count == 0) continue;
-            transform_face({{}, turn}, face.face);
-            face.update();
             FaceOverTriangle over;
-            clip_over_triangle(face, t, TriangleSides(t), surface, 10.0f, over);
+            cut(face, t, surface, over);
             ClippedFace clipped;
             clip_face(face_of(t, surface), face.face, false, 10.0f, clipped);
             // What is cut off by the slack of the sides alone is nothing.

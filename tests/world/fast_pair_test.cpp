@@ -95,7 +95,8 @@ TEST_P(FastPair, GainsNoEnergyAndKeepsMomenta) {
             for (int k = 0; k < 3; ++k) {
                 ASSERT_NEAR(end.linear[k], start.linear[k], 1e-5 * p) << name;
                 // Faster ones come to spin faster than bodies may, and are cut.
-                if (speed <= 100.0f) ASSERT_NEAR(end.angular[k], start.angular[k], 1e-4 * p) << name;
+                if (speed > 100.0f) continue;
+                ASSERT_NEAR(end.angular[k], start.angular[k], 1e-4 * p) << name;
             }
         }
 }

@@ -1,7 +1,8 @@
 #include "collision/mesh/filter.h"
 
-#include "collision/mesh/footing.h"
+#include "collision/mesh/query.h"
 #include "geometry/hull.h"
+#include "math/wide/mask.h"
 #include "math/wide/wide.h"
 
 namespace lendulet {
@@ -20,9 +21,9 @@ MeshFilter::MeshFilter(const MeshQuery& q, float limit) : surface_(q.surface), f
     MeshFilterBatch& b = batch_;
     const Geometry& g = q.shape;
     b.shape = &g;
-    b.hull = nullptr, b.hull_count = 0;
+    b.hull = nullptr, b.hull_count = b.hull_faces = 0;
     b.position = q.position, b.lower = q.lower, b.upper = q.upper, b.centre = q.centre;
-    b.to_shape = rotation_matrix(conjugate(q.turn));
+    b.to_shape = q.to_contact;
     b.slack = MeshQuery::level * q.size;
     b.limit = limit + b.slack;
     const CentredBox box = bounds(g, {0.0f, 0.0f, 0.0f, 1.0f});
@@ -34,6 +35,7 @@ MeshFilter::MeshFilter(const MeshQuery& q, float limit) : surface_(q.surface), f
     b.box_centre = 0.5f * (hull.lower + hull.upper), b.box_half = 0.5f * (hull.upper - hull.lower);
     if (hull.vertices.size() > most_corners) return;
     b.hull = hull.vertices.data(), b.hull_count = static_cast<int>(hull.vertices.size());
+    b.hull_face = hull.faces.data(), b.hull_faces = static_cast<int>(hull.faces.size());
 }
 
 void MeshFilter::load(const uint32_t* triangles, int count) {

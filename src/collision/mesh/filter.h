@@ -9,10 +9,10 @@
 
 namespace lendulet {
 
+struct HullFace;
 struct MeshQuery;
 
-// Triangles side by side and what they are tested against; filled and read by MeshFilter. Of masks, bit i is that of
-// triangle i.
+// Triangles side by side, what they are tested against, and what is left of them; filled and read by MeshFilter.
 struct MeshFilterBatch {
     static constexpr int capacity = 64, room = capacity + 16;  // whole blocks of the widest lanes
     int count;
@@ -20,24 +20,32 @@ struct MeshFilterBatch {
     float lean[room];  // most that the direction of the shortest distance leans across a side, as sine
 
     const Geometry* shape;
-    const Vec3* hull;  // its corners, where it is a hull of few
-    int hull_count;
-    Mat3 to_shape;                // rows: the shape's axes in those of the mesh
+    const Vec3* hull;           // its corners, where it is a hull of few,
+    const HullFace* hull_face;  // and its faces
+    int hull_count, hull_faces;
+    Mat3 to_shape;                // rows: the axes of contacts in those of the mesh
     Vec3 position, lower, upper;  // of the shape, and bounds relative to that, margin included, mesh axes
     Vec3 centre;                  // of the shape, relative to its position, mesh axes
     Vec3 box_centre, box_half;    // of the core, the shape's axes
     Vec3 box_lower, box_upper;    // of the core and the limit, the shape's axes
     float limit, slack;           // cores farther than that do not matter, give or take the slack, which is in it
 
-    uint64_t live;    // out: it may touch, or the shape is beyond its plane
-    uint64_t apart;   // out: the core is farther than the limit from it, though it crosses its plane
-    uint64_t behind;  // out: the shape's centre is
-    uint64_t beside;  // out: all of the core is outside one of its sides
-    // Out: where the core's lowest point along its normal is, of shapes of which that is found on the way: edges as of
-    // beyond_edges(), place relative to the shape's position, the shape's axes.
-    bool has_lowest;
-    uint64_t beyond[3];
-    float lowest[3][room];
+    // Out: those that may touch, or whose plane the shape is beyond, one after the other in their order, in the axes of
+    // contacts and relative to the shape's position.
+    int live;
+    uint32_t number[room];                 // of the triangle among those tested
+    float p[3][3][room], normal[3][room];  // by corner and component; towards the shape's centre
+    float flags[room];                     // as whole numbers, see below
+    float face[room];                      // the number of the face that looks at it: of a box or a hull of few
+    float lowest[3][room];                 // where the core's lowest point along the normal is,
+    bool has_lowest;                       // of shapes of which that is found on the way
+    enum Flag {
+        apart = 1,         // the core is farther than the limit from it, though it crosses its plane
+        behind = 2,        // the shape's centre is behind it
+        beside = 4,        // all of the core is outside one of its sides
+        first_beyond = 3,  // number of the first of three flags: edges as of beyond_edges()
+    };
+    bool is(Flag flag, int i) const { return (static_cast<int>(flags[i]) & flag) != 0; }
 };
 
 // Overlapping by h, the lowest point along a normal may be within a side by h tan(a / 2), with a the angle up to which
@@ -58,19 +66,27 @@ public:
     // Up to `capacity` triangles.
     void test(const uint32_t* triangles, int count);
 
-    uint64_t live() const { return batch_.live; }
-    bool is_apart(int i) const { return (batch_.apart >> i & 1) != 0; }
-    bool is_behind(int i) const { return (batch_.behind >> i & 1) != 0; }
-    bool is_beside(int i) const { return (batch_.beside >> i & 1) != 0; }
-    // Whether the two that follow are known.
-    bool has_lowest() const { return batch_.has_lowest; }
-    Vec3 lowest(int i) const { return {batch_.lowest[0][i], batch_.lowest[1][i], batch_.lowest[2][i]}; }
-    uint8_t edges_beyond(int i) const {
-        const uint64_t* b = batch_.beyond;
-        return static_cast<uint8_t>((b[0] >> i & 1) | (b[1] >> i & 1) << 1 | (b[2] >> i & 1) << 2);
+    // What is left, by number; and where its parts are.
+    int live() const { return batch_.live; }
+    uint32_t number(int i) const { return batch_.number[i]; }
+    bool is_apart(int i) const { return batch_.is(MeshFilterBatch::apart, i); }
+    bool is_behind(int i) const { return batch_.is(MeshFilterBatch::behind, i); }
+    bool is_beside(int i) const { return batch_.is(MeshFilterBatch::beside, i); }
+    uint8_t edges_beyond(int i) const {  // where lowest points are known
+        return static_cast<uint8_t>(static_cast<int>(batch_.flags[i]) >> MeshFilterBatch::first_beyond);
     }
+    Vec3 corner(int i, int k) const { return at(batch_.p[k], i); }
+    Vec3 normal(int i) const { return at(batch_.normal, i); }
+    Vec3 lowest(int i) const { return at(batch_.lowest, i); }
+    void set_lowest(int i, Vec3 p) { batch_.lowest[0][i] = p.x, batch_.lowest[1][i] = p.y, batch_.lowest[2][i] = p.z; }
+    bool has_lowest() const { return batch_.has_lowest; }
+    int32_t face(int i) const { return static_cast<int32_t>(batch_.face[i]); }
+    const MeshFilterBatch& batch() const { return batch_; }
 
 private:
+    static Vec3 at(const float (&rows)[3][MeshFilterBatch::room], int i) {
+        return {rows[0][i], rows[1][i], rows[2][i]};
+    }
     void load(const uint32_t* triangles, int count);
 
     const TriangleSurface& surface_;

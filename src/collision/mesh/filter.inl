@@ -93,16 +93,55 @@ LENDULET_FORCE_INLINE Vec3T<F> load(const float (&rows)[3][MeshFilterBatch::room
     return {load_wide<F>(rows[0] + first), load_wide<F>(rows[1] + first), load_wide<F>(rows[2] + first)};
 }
 
+// The number of the face that looks along a unit direction, of which best_face() gives all such directions the same;
+// -1: of other shapes.
+template <class F>
+LENDULET_FORCE_INLINE F facing(const MeshFilterBatch& b, Vec3T<F> d) {
+    const F zero{}, one = splat<F>(1.0f), two = splat<F>(2.0f);
+    if (b.shape->kind == GeometryKind::box) {
+        const F x = absolute(d.x), y = absolute(d.y), z = absolute(d.z);
+        auto by_x = (x >= y) & (x >= z), by_y = y >= z;
+        const F along = select(by_x, d.x, select(by_y, d.y, d.z));
+        return select(by_x, zero, select(by_y, two, two + two)) + select(along >= zero, one, zero);
+    }
+    if (b.shape->kind == GeometryKind::segment) {
+        const F end = select(d.y > zero, one, zero);
+        return select(absolute(d.y) <= splat<F>(segment_side_sine), two, end);
+    }
+    return splat<F>(-1.0f);
+}
+
+// The same of a hull of few corners, which the triangles are tested against on the way.
+template <class F, class M>
+LENDULET_FORCE_INLINE F facing_hull(const MeshFilterBatch& b, Vec3T<F> d, const Vec3T<F> (&p)[3], M& within_limit) {
+    F number = splat<F>(-1.0f), best = splat<F>(-3e38f);
+    for (int i = 0; i < b.hull_faces; ++i) {
+        const Vec3T<F> normal = splat<F>(b.hull_face[i].normal);
+        const F along = dot(normal, d),
+                nearest = minimum(minimum(dot(normal, p[0]), dot(normal, p[1])), dot(normal, p[2]));
+        auto better = along > best;
+        best = select(better, along, best), number = select(better, splat<F>(static_cast<float>(i)), number);
+        within_limit = within_limit & (nearest <= splat<F>(b.hull_face[i].offset + b.limit));
+    }
+    return number;
+}
+
+template <class F>
+LENDULET_FORCE_INLINE void pack(float (&rows)[3][MeshFilterBatch::room], int first, uint32_t bits, Vec3T<F> v) {
+    store_packed(rows[0] + first, bits, v.x);
+    store_packed(rows[1] + first, bits, v.y);
+    store_packed(rows[2] + first, bits, v.z);
+}
+
 template <int W>
-LENDULET_FORCE_INLINE void test_block(MeshFilterBatch& b, int first, uint64_t used) {
+LENDULET_FORCE_INLINE void test_block(MeshFilterBatch& b, int first, uint32_t used) {
     using F = Wide<float, W>;
     using V = Vec3T<F>;
-    auto bits = [&](auto mask) { return static_cast<uint64_t>(mask_bits(mask)) & used; };
     const F zero{};
     V p[3];
     for (int k = 0; k < 3; ++k) p[k] = load<F>(b.corner[k], first) - splat<F>(b.position);
     auto near = meet(boxes_of(p), b.lower, b.upper);
-    if (bits(near) == 0) return;
+    if ((mask_bits(near) & used) == 0) return;
 
     V normal = load<F>(b.front, first);
     auto behind = dot(normal, splat<F>(b.centre) - p[0]) < zero;
@@ -128,31 +167,40 @@ LENDULET_FORCE_INLINE void test_block(MeshFilterBatch& b, int first, uint64_t us
     }
     auto within_limit = meet(boxes_of(p), b.box_lower, b.box_upper);
     live = live & (within_limit | (height < zero));
-    if (bits(live) == 0) return;
-    b.live |= bits(live) << first;
-    b.apart |= bits(~within_limit) << first;
-    b.behind |= bits(behind) << first;
-    b.beside |= bits(beside) << first;
-    if (!b.has_lowest) return;
-    const F slack = splat<F>(b.slack) + splat<F>(half_gentle_tangent) * maximum(zero, -height);
-    for (int k = 0; k < 3; ++k) {
-        auto within = dot(out[k], lowest - p[k]) < -slack * size[k];
-        b.beyond[k] |= bits(~within) << first;
+    if ((mask_bits(live) & used) == 0) return;
+    F face;
+    if (b.hull_faces == 0) face = facing(b, away[0]);
+    else face = facing_hull(b, away[0], p, within_limit);
+    live = live & (within_limit | (height < zero));
+    const uint32_t bits = mask_bits(live) & used;
+
+    auto flag = [&](auto mask, int value) { return select(mask, splat<F>(static_cast<float>(value)), zero); };
+    F flags = flag(~within_limit, MeshFilterBatch::apart) + flag(behind, MeshFilterBatch::behind) +
+              flag(beside, MeshFilterBatch::beside);
+    if (b.has_lowest) {
+        const F slack = splat<F>(b.slack) + splat<F>(half_gentle_tangent) * maximum(zero, -height);
+        for (int k = 0; k < 3; ++k) {
+            auto within = dot(out[k], lowest - p[k]) < -slack * size[k];
+            flags += flag(~within, 1 << (MeshFilterBatch::first_beyond + k));
+        }
+        pack(b.lowest, b.live, bits, lowest);
     }
-    store_wide(b.lowest[0] + first, lowest.x);
-    store_wide(b.lowest[1] + first, lowest.y);
-    store_wide(b.lowest[2] + first, lowest.z);
+    store_numbers<F>(b.number + b.live, bits, static_cast<uint32_t>(first));
+    for (int k = 0; k < 3; ++k) pack(b.p[k], b.live, bits, p[k]);
+    pack(b.normal, b.live, bits, -away[0]);
+    store_packed(b.flags + b.live, bits, flags);
+    store_packed(b.face + b.live, bits, face);
+    b.live += __builtin_popcount(bits);
 }
 
 }  // namespace mesh_filter
 
 template <int W>
 void filter_triangles(MeshFilterBatch& batch) {
-    batch.live = batch.apart = batch.behind = batch.beside = 0;
-    for (uint64_t& b : batch.beyond) b = 0;
+    batch.live = 0;
     batch.has_lowest = false;
     for (int first = 0; first < batch.count; first += W) {
         const int left = batch.count - first;
-        mesh_filter::test_block<W>(batch, first, (uint64_t{1} << (left < W ? left : W)) - 1u);
+        mesh_filter::test_block<W>(batch, first, left < W ? (1u << left) - 1u : ~0u >> (32 - W));
     }
 }

@@ -36,10 +36,10 @@ void Footing::note(const MeshQuery& q, uint32_t triangle, bool from_behind, uint
 Footing::Noted Footing::look_up(const MeshQuery& q, uint32_t index) const {
     for (int i = 0; i < count_; ++i)
         if (noted_[i].index == index) return noted_[i];
-    Triangle t = make_triangle(q.surface, index, q.position, q.centre);
+    const Triangle t = q.triangle(index);
     return {index,
             {q.surface.vertex(index, 0), q.surface.vertex(index, 1), q.surface.vertex(index, 2)},
-            beyond_edges(q, t, TriangleSides(t), q.lowest_along(t.normal)),
+            beyond_edges(q, t, TriangleSides(t), support_core(q.shape, -t.normal)),
             t.from_behind};
 }
 
@@ -52,26 +52,27 @@ bool Footing::is_settled(uint32_t vertex, bool from_behind) const {
     return false;
 }
 
-bool Footing::may_touch_rim(const MeshQuery& q, const Triangle& t, uint8_t beyond) const {
+bool Footing::may_touch_rim(const MeshQuery& q, const Beside& t) const {
+    const uint8_t touching = t.from_behind ? q.surface.concave_edges(t.index) : q.surface.convex_edges(t.index);
     uint8_t corners = 0;  // that may be touched: those of edges that the lowest point is beyond
     for (int i = 0; i < 3; ++i)
-        if ((beyond >> i & 1) != 0) corners |= bit(i) | bit((i + 1) % 3);
+        if ((t.beyond >> i & 1) != 0) corners |= bit(i) | bit((i + 1) % 3);
     for (int i = 0; i < 3; ++i) {
-        if ((beyond >> i & 1) == 0) continue;
+        if ((t.beyond >> i & 1) == 0) continue;
         int32_t across = q.surface.neighbour(t.index, i);
         if (across < 0) return true;
         Noted n = look_up(q, static_cast<uint32_t>(across));
         if (n.from_behind != t.from_behind) return true;
         for (int k = 0; k < 3; ++k) {
             bool shared = q.surface.neighbour(n.index, k) == static_cast<int32_t>(t.index);
-            if (shared && (n.beyond >> k & 1) != 0 && (t.touching >> i & 1) != 0) return true;
+            if (shared && (n.beyond >> k & 1) != 0 && (touching >> i & 1) != 0) return true;
             for (int c : {i, (i + 1) % 3})
                 if (n.vertex[k] == q.surface.vertex(t.index, c) && is_within(n.beyond, k))
                     corners &= static_cast<uint8_t>(~bit(c));
         }
     }
     for (int c = 0; c < 3; ++c) {
-        bool touches = (t.touching & (bit(c) | bit(before(c)))) != 0;
+        bool touches = (touching & (bit(c) | bit(before(c)))) != 0;
         if ((corners >> c & 1) != 0 && touches && !is_settled(q.surface.vertex(t.index, c), t.from_behind)) return true;
     }
     return false;

@@ -23,9 +23,15 @@ class Footing {
 public:
     // Beyond the capacity nothing is kept, and more closest points are sought than necessary.
     void note(const MeshQuery& q, uint32_t triangle, bool from_behind, uint8_t beyond);
+    // Of a triangle that the lowest point is not over.
+    struct Beside {
+        uint32_t index;
+        uint8_t beyond;  // as of beyond_edges()
+        bool from_behind;
+    };
     // False only where the shape cannot touch an edge or corner of the triangle, all of whose edges are gentle or
-    // cannot touch; of triangles that the lowest point is not over.
-    bool may_touch_rim(const MeshQuery& q, const Triangle& t, uint8_t beyond) const;
+    // cannot touch.
+    bool may_touch_rim(const MeshQuery& q, const Beside& t) const;
 
 private:
     static constexpr int capacity = 32;

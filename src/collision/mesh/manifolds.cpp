@@ -56,7 +56,7 @@ MeshManifolds::Group* MeshManifolds::group_for(const TriangleContact& contact) {
         }
         if (group->deepest <= deepest) return nullptr;
     }
-    group->normal = contact.normal;
+    group->normal = contact.normal, group->front = contact.front;
     group->face = contact.face;
     group->material = contact.material;
     group->radius = contact.radius, group->follow = contact.follow;
@@ -87,7 +87,7 @@ void MeshManifolds::add(const TriangleContact& contact) {
     // A face's normal is exact, an edge's is that of the nearest points.
     bool leads = contact.face != group->face ? contact.face : deepest < group->deepest;
     if (leads) {
-        group->normal = contact.normal;
+        group->normal = contact.normal, group->front = contact.front;
         group->face = contact.face;
         group->radius = contact.radius, group->follow = contact.follow;
         group->deepest_original = contact.original;
@@ -97,7 +97,7 @@ void MeshManifolds::add(const TriangleContact& contact) {
     for (int i = 0; i < contact.count; ++i) add_point(*group, contact.points[i]);
 }
 
-int MeshManifolds::write(Manifold* out, int capacity) {
+int MeshManifolds::write(const Placing& placing, Manifold* out, int capacity) {
     // By depth only where some must go: else the order in which they were found is steadier.
     int order[max_groups];
     for (int i = 0; i < count_; ++i) order[i] = i;
@@ -111,21 +111,22 @@ int MeshManifolds::write(Manifold* out, int capacity) {
         for (int i = best; i > k; --i) order[i] = order[i - 1];
         order[k] = found;
     }
+    const Mat3 turn = rotation_matrix(placing.from_contact);
     for (int k = 0; k < written; ++k) {
         Group& group = groups_[order[k]];
-        reduce(group);
+        if (group.count > 1) reduce(group);
         Manifold& m = out[k];
-        m = {};
-        m.normal = group.normal;
+        m.normal = group.face ? rotate(placing.from_mesh, group.front) : turn * group.normal;
         m.count = group.count;
         for (int i = 0; i < group.count; ++i) {
             const MeshPoint& p = group.points[i];
-            m.points[i] = {p.position(), p.separation, p.id};
+            m.points[i] = {placing.position + turn * p.position(), p.separation, p.id};
         }
+        m.radius_a = 0.0f;
         m.radius_b = group.radius;
         m.follow = group.follow;
         m.triangle = static_cast<int32_t>(group.deepest_original);
-        m.key = group.face ? name_of_face(group.normal, group.material) : 0x80000000u | group.lowest_original;
+        m.key = group.face ? name_of_face(group.front, group.material) : 0x80000000u | group.lowest_original;
     }
     return written;
 }

@@ -18,9 +18,10 @@ struct MeshPoint {
     Vec3 position() const { return {x, y, z}; }
 };
 
-// What one triangle gives: points with one normal, mesh axes, relative to the position of the convex shape.
+// What one triangle gives: points with one normal, relative to the position of the convex shape.
 struct TriangleContact {
     Vec3 normal;  // from the triangle to the shape
+    Vec3 front;   // of a face: the same in the axes of the mesh, of which it does not turn with the shape
     bool face;    // the normal is that of the triangle
     float radius, follow;
     uint32_t original;  // the triangle
@@ -35,19 +36,31 @@ public:
     explicit MeshManifolds(float resolution) : near_squared_(resolution * resolution) {}
 
     void add(const TriangleContact& contact);
-    // Writes at most `capacity` manifolds, the deepest where there are more; positions and normals as they were added.
-    int write(Manifold* out, int capacity);
+    // Writes at most `capacity` manifolds, the deepest where there are more, turned from the axes of the mesh and of
+    // the contacts to others and relative to a point from which the shape is at `position`.
+    struct Placing {
+        Quat from_mesh, from_contact;
+        Vec3 position;
+    };
+    int write(const Placing& placing, Manifold* out, int capacity);
 
 private:
     static constexpr int max_groups = 24, max_points = 64;
-    struct Group {
-        Vec3 normal;
+    struct Group {  // without initial values
+        union {
+            Vec3 normal;
+        };
+        union {
+            Vec3 front;
+        };
         bool face;
         uint8_t material;
         float radius, follow, deepest;
         uint32_t lowest_original, deepest_original;
         int count;
         MeshPoint points[max_points];
+
+        Group() {}
     };
 
     Group* group_for(const TriangleContact& contact);

@@ -4,7 +4,8 @@
 //
 // Faces come first: clipping the shape's face by the triangle often proves that the triangle's normal is the direction
 // of the shortest way out; only edges that can touch need GJK and EPA.
-#include <bit>
+#include <cstddef>
+#include <new>
 
 #include "collision/mesh/candidates.h"
 #include "collision/mesh/filter.h"
@@ -25,20 +26,32 @@ constexpr float level = MeshQuery::level;
 // Cosine from which the shape's own face is the reference for an edge of the mesh.
 constexpr float flat = 0.998f;
 
-// The shape's face and farthest core point towards a plane: neighbours in one plane share them.
+constexpr int no_face = -1;
+// Before closest points are sought otherwise; of the shape's size, the least distance at which they are, and how far
+// what is proven may be off.
+constexpr int most_steps = 3;
+constexpr float least_between = 0.01f, proven_gap = 1e-6f;
+
 struct MeshCollision : MeshQuery {
     using MeshQuery::MeshQuery;
-    Vec3 facing{};  // the plane's normal
-    ShapeFace face;
-    int32_t face_number = -1;  // of a box or hull
-    Vec3 lowest;
+
+    static constexpr int most_jobs = OverTriangleBatch::capacity;
+    OverTriangleBatch batch;
+    int face_of[most_jobs];  // the face that each triangle of the batch is looked at by; none: only its rim might touch
+
+    // Faces of the shape: triangles of one plane share them, and so do those that one face of a box or hull looks at.
+    int face_count = 0;
+    int32_t face_number[most_jobs + 1];  // -1: of other shapes
+    Vec3 facing{};                       // the normal of the plane that the last one looks at
+    alignas(ShapeFace) std::byte faces[(most_jobs + 1) * sizeof(ShapeFace)];
+    ShapeFace& face_at(int i) { return reinterpret_cast<ShapeFace*>(faces)[i]; }
+    const ShapeFace& face_at(int i) const { return reinterpret_cast<const ShapeFace*>(faces)[i]; }
 
     Footing footing;
     // Triangles that the shape is beside: their edges are left until it is known what else it stands on.
-    static constexpr int most_beside = 32;
+    static constexpr int most_beside = 48;
     int beside_count = 0;
-    uint32_t beside[most_beside];
-    uint8_t beyond[most_beside];  // their edges
+    Footing::Beside beside[most_beside];
 };
 
 // By how much the box within which triangles are kept is wider than needed: of the shape's size and of the margin,
@@ -47,17 +60,14 @@ constexpr float leeway_of_size = 0.08f, leeway_of_margin = 2.0f, most_leeway = 0
 // Wider than rounding, where none are kept: whether a triangle is near is the filter's to say.
 constexpr float least_leeway = 0.01f;
 
-// visit(triangle index, what the filter found, its number there) for those that may come within `limit` of the core, in
-// the order of the mesh.
+// visit(triangles, what the filter found of them) for those that may come within `limit` of the core, in the order of
+// the mesh.
 template <class Visit>
 void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&& visit) {
     MeshFilter filter(q, limit);
     auto look_through = [&](const uint32_t* triangles, int count) {
         filter.test(triangles, count);
-        for (uint64_t live = filter.live(); live != 0; live &= live - 1) {
-            const int i = std::countr_zero(live);
-            visit(triangles[i], filter, i);
-        }
+        visit(triangles, filter);
     };
     const Vec3 lower = q.position + q.lower, upper = q.position + q.upper;
     if (kept != nullptr && !kept->hold(lower, upper)) {
@@ -81,7 +91,7 @@ void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&
 
 void start(const MeshQuery& q, const Triangle& t, Vec3 normal, bool face, float radius, float follow,
            TriangleContact& out) {
-    out.normal = normal;
+    out.normal = out.front = normal;
     out.face = face;
     out.radius = radius;
     out.follow = follow;
@@ -110,7 +120,7 @@ bool is_nearer_across(const MeshQuery& q, const Triangle& t, uint8_t edges, Vec3
         if ((edges >> i & 1) == 0) continue;
         int32_t across = q.surface.neighbour(t.index, i);
         if (across < 0) continue;
-        Triangle n = make_triangle(q.surface, static_cast<uint32_t>(across), q.position, q.centre);
+        const Triangle n = q.triangle(static_cast<uint32_t>(across));
         if (n.from_behind != t.from_behind) continue;
         int shared = 0;
         while (shared < 2 && q.surface.neighbour(n.index, shared) != static_cast<int32_t>(t.index)) ++shared;
@@ -142,53 +152,72 @@ void sphere_triangle(const MeshQuery& q, const Triangle& t, TriangleContact& out
     add_point(nearest.point + (0.5f * separation) * normal, separation, 0, out);
 }
 
+// Number i of what the filter left, of which it knows all places.
+Triangle left_triangle(const MeshQuery& q, const uint32_t* triangles, const MeshFilter& found, int i) {
+    Triangle t;
+    for (int k = 0; k < 3; ++k) t.vertices[k] = found.corner(i, k);
+    t.normal = found.normal(i);
+    t.from_behind = found.is_behind(i);
+    t.name(q.surface, triangles[found.number(i)]);
+    return t;
+}
+
+void collide_ball(const MeshQuery& q, const uint32_t* triangles, const MeshFilter& found, MeshManifolds& manifolds) {
+    const bool one_sided = q.surface.one_sided();
+    for (int i = 0; i < found.live(); ++i) {
+        if (one_sided && found.is_behind(i)) continue;
+        TriangleContact contact;
+        sphere_triangle(q, left_triangle(q, triangles, found, i), contact);
+        manifolds.add(contact);
+    }
+}
+
 // --- faces
 
-// Which face of a box or hull looks along a direction; -1: of other shapes, whose faces turn with the direction.
-int32_t number_of_face(const Geometry& g, Vec3 direction) {
-    if (g.kind == GeometryKind::hull) return static_cast<int32_t>(support_face(*g.hull, direction));
-    if (g.kind != GeometryKind::box) return -1;
-    Vec3 size = absolute(direction);
-    int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    return 2 * axis + (component(direction, axis) >= 0.0f ? 1 : 0);
-}
-
-void look_at(MeshCollision& q, Vec3 normal, const MeshFilter& found, int i) {
-    if (q.facing == normal) return;
-    q.facing = normal;
-    Vec3 down = rotate_inverse(q.turn, -normal);
-    q.lowest = rotate(q.turn, found.has_lowest() ? found.lowest(i) : support_core(q.shape, down));
-    const int32_t number = number_of_face(q.shape, down);
-    if (number >= 0 && number == q.face_number) return;
-    q.face_number = number;
-    q.face.face = best_face(q.shape, down);
-    transform_face({{}, q.turn}, q.face.face);
-    q.face.update();
-}
-
-bool is_over(const TriangleSides& sides, Vec3 p) {
-    for (int i = 0; i < 3; ++i) {
-        if (dot(sides.out[i], p) > sides.offset[i]) return false;
+// The face that looks at a plane, by its number where the filter knows it.
+int look_at(MeshCollision& q, Vec3 normal, int32_t number) {
+    int i = q.face_count - 1;
+    if (number >= 0) {
+        while (i >= 0 && q.face_number[i] != number) --i;
+        if (i >= 0) return i;
+    } else if (i >= 0 && q.facing == normal) {
+        return i;
     }
-    return true;
+    i = q.face_count++;
+    q.facing = normal;
+    q.face_number[i] = number;
+    new (&q.face_at(i)) ShapeFace(q.shape, -normal);
+    return i;
 }
+
+// A triangle of the batch.
+struct FaceJob {
+    Triangle t;
+    const Face& face;
+    Vec3 lowest;   // the core's point along the normal
+    float height;  // of that over the triangle
+    bool apart;    // the core is farther than the limit, though not from its plane
+    uint8_t beyond;
+};
 
 // The part of the shape's face over the triangle, and its lowest point where that is over it and below the face.
-void clip_to_triangle(const MeshCollision& q, const Triangle& t, const TriangleSides& sides, FaceOverTriangle& out) {
-    clip_over_triangle(q.face, t, sides, q.surface, q.pair.margin + q.shape.rounding, out);
-    const float height = dot(q.lowest - t.vertices[0], t.normal);
+void read_over(const MeshCollision& q, const FaceJob& job, int lane, FaceOverTriangle& out) {
+    q.batch.read(lane, job.t, job.face, q.surface, out);
     float deepest = 3e38f;
     for (int i = 0; i < out.count; ++i) deepest = minimum(deepest, out.points[i].height);
-    if (height < deepest - 10.0f * level * q.size && is_over(sides, q.lowest)) {
-        const uint32_t id = point_id(face_feature(0), face_feature(q.face.face.id));
-        const Vec3 foot = q.lowest - height * t.normal;
-        out.points[out.count++] = {foot.x, foot.y, foot.z, height, id};
+    if (job.height < deepest - 10.0f * level * q.size && q.batch.lowest_over(lane)) {
+        const uint32_t id = point_id(face_feature(0), face_feature(job.face.id));
+        const Vec3 foot = job.lowest - job.height * job.t.normal;
+        out.points[out.count++] = {foot.x, foot.y, foot.z, job.height, id};
     }
 }
 
-void face_contact(const MeshCollision& q, const Triangle& t, const FaceOverTriangle& over, TriangleContact& out) {
+void face_contact(const MeshQuery& q, const FaceJob& job, const FaceOverTriangle& over, TriangleContact& out) {
+    const Triangle& t = job.t;
     float radius = q.shape.rounding;
-    start(q, t, t.normal, true, radius + q.face.face.extra_radius, 1.0f, out);
+    start(q, t, t.normal, true, radius + job.face.extra_radius, 1.0f, out);
+    const Vec3 front = q.surface.normal(t.index);
+    out.front = t.from_behind ? -front : front;
     for (int i = 0; i < over.count && i < max_clipped_points; ++i) {
         const FaceOverTriangle::Point& p = over.points[i];
         add_point(p.foot() + (0.5f * (p.height - radius)) * t.normal, p.height - radius, p.id, out);
@@ -199,8 +228,9 @@ void face_contact(const MeshCollision& q, const Triangle& t, const FaceOverTrian
 // of the core is over the triangle. Overlapping, take a segment from a lowest point p to the centre: leaving the
 // triangle by the side over edge i takes at least the distance of that edge from the plane of the segment and the
 // edge's direction, and the whole core needs at least as much as a segment in it.
-bool is_shortest(const MeshCollision& q, const Triangle& t, const FaceOverTriangle& over) {
-    float lowest = dot(t.normal, q.lowest - t.vertices[0]), limit = lowest + level * q.size;
+bool is_shortest(const MeshQuery& q, const FaceJob& job, const FaceOverTriangle& over) {
+    const Triangle& t = job.t;
+    float lowest = job.height, limit = lowest + level * q.size;
     Vec3 p{};
     float count = 0.0f;
     for (int i = 0; i < over.count; ++i) {
@@ -211,8 +241,8 @@ bool is_shortest(const MeshCollision& q, const Triangle& t, const FaceOverTriang
     if (count == 0.0f) return false;
     if (lowest >= 0.0f) return true;
     p = (1.0f / count) * p;
-    Vec3 along = q.centre - p;
-    if (dot(t.normal, q.centre - t.vertices[0]) < -lowest) return false;
+    Vec3 along = q.heart - p;
+    if (dot(t.normal, q.heart - t.vertices[0]) < -lowest) return false;
     for (int i = 0; i < 3; ++i) {
         Vec3 edge = t.vertices[(i + 1) % 3] - t.vertices[i];
         Vec3 side = normalize(cross(along, edge));
@@ -232,12 +262,41 @@ uint8_t edges_at(const MeshQuery& q, const Triangle& t, Vec3 point) {
     return edges;
 }
 
+// The core's point nearest to p, of lines and boxes; of others, that farthest along `towards`.
+Vec3 nearest_in_core(const Geometry& g, Vec3 p, Vec3 towards) {
+    if (g.kind == GeometryKind::segment) return {0.0f, clamp(p.y, -g.size.y, g.size.y), 0.0f};
+    if (g.kind != GeometryKind::box) return support_core(g, towards);
+    return {clamp(p.x, -g.size.x, g.size.x), clamp(p.y, -g.size.y, g.size.y), clamp(p.z, -g.size.z, g.size.z)};
+}
+
+// From one to the other and back (Cheney, Goldstein 1959): the nearest points of core and triangle, or that the two are
+// farther apart than `limit`, where the core's farthest point against the direction between them proves it after few
+// steps. Where they are very near the direction is not certain enough.
+bool find_nearest(const MeshQuery& q, const Triangle& t, float limit, ConvexDistance& out) {
+    Vec3 in_core = support_core(q.shape, -t.normal);
+    for (int step = 0; step < most_steps; ++step) {
+        const Vec3 point = nearest_on_triangle(t.vertices, in_core).point, between = in_core - point;
+        const float d = length(between);
+        if (!(d > least_between * q.size)) return false;
+        const Vec3 normal = (1.0f / d) * between;
+        const float gap = dot(normal, in_core - support_core(q.shape, -normal));
+        if (gap <= proven_gap * q.size || d - gap > limit) {
+            out = {d - maximum(gap, 0.0f), normal, point, in_core, 0, 0, true};
+            return true;
+        }
+        in_core = nearest_in_core(q.shape, point, -normal);
+    }
+    return false;
+}
+
 ConvexDistance distance_to(const MeshQuery& q, const Triangle& t, float limit) {
+    ConvexDistance found;
+    if (find_nearest(q, t, limit, found)) return found;
     Geometry flat_core;
     flat_core.kind = GeometryKind::triangle;
     flat_core.triangle = t.vertices;
     GjkCache cold;
-    return distance({&flat_core, &q.shape, {{}, q.turn}}, cold, q.settings.simplex, limit);
+    return distance({&flat_core, &q.shape, {}}, cold, q.settings.simplex, limit);
 }
 
 // Behind a closed surface's side, whose neighbour across one of these edges the shape's centre is in front of: the
@@ -246,7 +305,8 @@ bool neighbour_pushes(const MeshQuery& q, const Triangle& t, uint8_t edges) {
     for (int i = 0; i < 3; ++i) {
         int32_t neighbour = q.surface.neighbour(t.index, i);
         if (!((edges & t.bent) >> i & 1) || neighbour < 0) continue;
-        float height = dot(q.surface.normal(static_cast<uint32_t>(neighbour)), q.centre - t.vertices[i]);
+        const Vec3 front = q.to_contact * q.surface.normal(static_cast<uint32_t>(neighbour));
+        float height = dot(front, q.heart - t.vertices[i]);
         if (t.from_behind ? height > 0.0f : height < 0.0f) return true;
     }
     return false;
@@ -288,8 +348,7 @@ bool along_edge(const MeshQuery& q, const Triangle& t, const Face& line, uint8_t
 void edge_contact(const MeshQuery& q, const Triangle& t, const ConvexDistance& nearest, uint8_t edges,
                   TriangleContact& out) {
     Vec3 normal = nearest.normal;
-    Face face = best_face(q.shape, rotate_inverse(q.turn, -normal));
-    transform_face({{}, q.turn}, face);
+    const Face face = best_face(q.shape, -normal);
     if (face.count >= 3 && dot(face.normal, normal) < -flat && on_shape_face(q, t, face, out)) return;
     if (face.count == 2 && along_edge(q, t, face, edges, normal, out)) return;
     float radius = q.shape.rounding;
@@ -316,53 +375,88 @@ bool rim_contact(const MeshQuery& q, const Triangle& t, const ConvexDistance& ne
     return overlapping && closed && neighbour_pushes(q, t, edges);
 }
 
-// Whether only the rim of a triangle might touch the shape, which is beside it: then it is noted for later, or left out
-// where no edge of it can touch.
-bool is_left_for_later(MeshCollision& q, uint32_t index, const MeshFilter& found, int i) {
+// Whether only the rim of a triangle might touch the shape, which is beside it.
+bool is_beside(const MeshQuery& q, uint32_t index, const MeshFilter& found, int i) {
     if (!found.has_lowest() || found.is_apart(i) || found.is_behind(i) || !found.is_beside(i)) return false;
-    const uint8_t touching = q.surface.convex_edges(index);
-    if ((touching & q.surface.sharp_edges(index)) != 0 || q.beside_count == MeshCollision::most_beside) return false;
-    const uint8_t beyond = found.edges_beyond(i);
-    q.footing.note(q, index, false, beyond);
-    if (touching == 0) return true;
-    q.beyond[q.beside_count] = beyond;
-    q.beside[q.beside_count++] = index;
-    return true;
+    return (q.surface.convex_edges(index) & q.surface.sharp_edges(index)) == 0;
 }
 
-// What triangle `index` gives, number i of those that the filter found.
-void convex_triangle(MeshCollision& q, const Triangle& t, const MeshFilter& found, int i, TriangleContact& out) {
-    const bool apart = found.is_apart(i);  // though not from its plane
-    look_at(q, t.normal, found, i);
-    float limit = q.pair.margin + q.shape.rounding;
-    float height = dot(t.normal, q.lowest - t.vertices[0]);
-    if (height > limit) return;
-    const TriangleSides sides(t);
-    const uint8_t beyond = found.has_lowest() ? found.edges_beyond(i) : beyond_edges(q, t, sides, q.lowest);
-    q.footing.note(q, t.index, t.from_behind, beyond);
+void leave_for_later(MeshCollision& q, const Footing::Beside& t) { q.beside[q.beside_count++] = t; }
+
+// What a triangle gives whose face is cut.
+void convex_triangle(MeshCollision& q, const FaceJob& job, int lane, TriangleContact& out) {
+    const Triangle& t = job.t;
+    const float limit = q.batch.limit;
+    q.footing.note(q, t.index, t.from_behind, job.beyond);
     FaceOverTriangle over;
-    clip_to_triangle(q, t, sides, over);
+    read_over(q, job, lane, over);
     // A face within a flat or hollow part can touch with its own normal only, and so can the part of one within a
     // gently rolling surface that the shape is over. Overlapping from behind, the way out may be across an edge.
     const bool gentle = (t.touching & t.sharp) == 0, over_face = over.count > 0;
-    bool sure =
-        (t.touching == 0 || (gentle && !apart && over_face)) && (height >= 0.0f || !t.from_behind || t.bent == 0);
-    if (sure || is_shortest(q, t, over)) return face_contact(q, t, over, out);
-    if (apart) return;
-    if (gentle && !over_face && q.beside_count < MeshCollision::most_beside) {
-        q.beyond[q.beside_count] = beyond;
-        q.beside[q.beside_count++] = t.index;
-        return;
-    }
+    bool sure = (t.touching == 0 || (gentle && !job.apart && over_face)) &&
+                (job.height >= 0.0f || !t.from_behind || t.bent == 0);
+    if (sure || is_shortest(q, job, over)) return face_contact(q, job, over, out);
+    if (job.apart) return;
+    if (gentle && !over_face && q.beside_count < MeshCollision::most_beside)
+        return leave_for_later(q, {t.index, job.beyond, t.from_behind});
     ConvexDistance nearest = distance_to(q, t, limit);
     if (nearest.distance > limit || rim_contact(q, t, nearest, out)) return;
-    face_contact(q, t, over, out);
+    face_contact(q, job, over, out);
+}
+
+// Those of the batch, for which faces are chosen and cut.
+void collide_batch(MeshCollision& q, const uint32_t* triangles, MeshFilter& found, int first,
+                   MeshManifolds& manifolds) {
+    OverTriangleBatch& batch = q.batch;
+    batch.begin(found.batch(), first);
+    const bool one_sided = q.surface.one_sided();
+    bool may_be_later = q.beside_count + batch.count <= MeshCollision::most_beside;
+    for (int k = 0; k < batch.count; ++k) {
+        const int i = first + k;
+        q.face_of[k] = no_face;
+        if (one_sided && found.is_behind(i)) continue;
+        if (may_be_later && is_beside(q, triangles[found.number(i)], found, i)) continue;
+        const Vec3 normal = found.normal(i);
+        if (!found.has_lowest()) found.set_lowest(i, support_core(q.shape, -normal));
+        q.face_of[k] = look_at(q, normal, found.face(i));
+        batch.set_face(k, q.face_at(q.face_of[k]));
+    }
+    q.settings.clip(batch);
+    for (int k = 0; k < batch.count; ++k) {
+        const int i = first + k;
+        if (q.face_of[k] == no_face) {
+            if (one_sided && found.is_behind(i)) continue;
+            const uint32_t index = triangles[found.number(i)];
+            q.footing.note(q, index, false, found.edges_beyond(i));
+            if (q.surface.convex_edges(index) != 0) leave_for_later(q, {index, found.edges_beyond(i), false});
+            continue;
+        }
+        const float height = batch.lowest_height[k];
+        if (height > batch.limit) continue;
+        const uint8_t beyond = found.has_lowest() ? found.edges_beyond(i) : batch.beyond(k);
+        const FaceJob job{left_triangle(q, triangles, found, i),
+                          q.face_at(q.face_of[k]).face,
+                          found.lowest(i),
+                          height,
+                          found.is_apart(i),
+                          beyond};
+        TriangleContact contact;
+        convex_triangle(q, job, k, contact);
+        manifolds.add(contact);
+    }
+}
+
+void collide_faces(MeshCollision& q, const uint32_t* triangles, MeshFilter& found, MeshManifolds& manifolds) {
+    for (int first = 0; first < found.live(); first += OverTriangleBatch::capacity) {
+        q.face_count = 0;
+        collide_batch(q, triangles, found, first, manifolds);
+    }
 }
 
 // What the shape is beside, once all that it is over is known.
 void beside_triangle(const MeshCollision& q, int i, TriangleContact& out) {
-    Triangle t = make_triangle(q.surface, q.beside[i], q.position, q.centre);
-    if (!q.footing.may_touch_rim(q, t, q.beyond[i])) return;
+    if (!q.footing.may_touch_rim(q, q.beside[i])) return;
+    const Triangle t = q.triangle(q.beside[i].index);
     float limit = q.pair.margin + q.shape.rounding;
     ConvexDistance nearest = distance_to(q, t, limit);
     if (nearest.distance <= limit) rim_contact(q, t, nearest, out);
@@ -373,42 +467,32 @@ void beside_triangle(const MeshCollision& q, int i, TriangleContact& out) {
 int collide_mesh_convex(const CollidePair& pair, const CollideSettings& settings, MeshCandidates* kept, Manifold* out,
                         int capacity) {
     MeshCollision q(pair, settings);
+    q.batch.limit = pair.margin + q.shape.rounding, q.batch.level = level * q.size;
     MeshManifolds manifolds(10.0f * level * q.size);
-    const bool ball = pair.b->kind == GeometryKind::point, one_sided = q.surface.one_sided();
-    for_each_near(q, pair.margin + q.shape.rounding, kept, [&](uint32_t index, const MeshFilter& found, int i) {
-        if (!ball && is_left_for_later(q, index, found, i)) return;
-        Triangle t = make_triangle(q.surface, index, q.position, q.centre);
-        if (t.from_behind && one_sided) return;
-        TriangleContact contact;
-        if (ball) sphere_triangle(q, t, contact);
-        else convex_triangle(q, t, found, i, contact);
-        manifolds.add(contact);
+    for_each_near(q, q.batch.limit, kept, [&](const uint32_t* triangles, MeshFilter& found) {
+        if (pair.b->kind == GeometryKind::point) collide_ball(q, triangles, found, manifolds);
+        else collide_faces(q, triangles, found, manifolds);
     });
     for (int i = 0; i < q.beside_count; ++i) {
         TriangleContact contact;
         beside_triangle(q, i, contact);
         manifolds.add(contact);
     }
-    int count = manifolds.write(out, capacity < max_mesh_manifolds ? capacity : max_mesh_manifolds);
-    for (int k = 0; k < count; ++k) {
-        Manifold& m = out[k];
-        m.normal = rotate(pair.rotation_a, m.normal);
-        for (int i = 0; i < m.count; ++i) {
-            m.points[i].position = pair.offset + rotate(pair.rotation_a, m.points[i].position);
-        }
-    }
-    return count;
+    return manifolds.write({pair.rotation_a, q.contact_rotation(), pair.offset}, out,
+                           capacity < max_mesh_manifolds ? capacity : max_mesh_manifolds);
 }
 
 bool overlap_mesh_convex(const CollidePair& pair, const CollideSettings& settings) {
     const MeshQuery q(pair, settings);
     bool touching = false;
-    for_each_near(q, q.shape.rounding, nullptr, [&](uint32_t index, const MeshFilter& found, int i) {
-        if (touching || found.is_apart(i)) return;
-        Triangle t = make_triangle(q.surface, index, q.position, q.centre);
-        float radius = q.shape.rounding;
-        touching = pair.b->kind == GeometryKind::point ? length(nearest_on_triangle(t.vertices, {}).point) <= radius
-                                                       : distance_to(q, t, radius).distance <= radius;
+    for_each_near(q, q.shape.rounding, nullptr, [&](const uint32_t* triangles, const MeshFilter& found) {
+        for (int i = 0; i < found.live() && !touching; ++i) {
+            if (found.is_apart(i)) continue;
+            const Triangle t = left_triangle(q, triangles, found, i);
+            const float radius = q.shape.rounding;
+            touching = pair.b->kind == GeometryKind::point ? length(nearest_on_triangle(t.vertices, {}).point) <= radius
+                                                           : distance_to(q, t, radius).distance <= radius;
+        }
     });
     return touching;
 }

@@ -1,5 +1,5 @@
-// A triangle of a mesh or height field while a convex shape is collided with it: in the mesh's axes, relative to the
-// position of the shape, and seen from the side on which the shape's centre is.
+// A triangle of a mesh or height field while a convex shape is collided with it: relative to the position of the shape,
+// and seen from the side on which the shape's centre is.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,19 @@ struct Triangle {
     uint8_t bent;       // bit i: edge i is not flat
     uint8_t sharp;      // bit i: edge i bends by more than the faces on both sides can stand for
     bool from_behind;   // the centre is behind the front face
+
+    // What does not depend on places; after `from_behind`.
+    void name(const TriangleSurface& surface, uint32_t i) {
+        index = i;
+        original = surface.original(i);
+        const uint8_t convex = surface.convex_edges(i), concave = surface.concave_edges(i);
+        touching = from_behind ? concave : convex;
+        bent = convex | concave;
+        sharp = surface.sharp_edges(i);
+    }
 };
 
-// `position` is that of the shape and `centre` its centre relative to that, mesh axes.
+// In the mesh's axes, as `position`, that of the shape, and `centre`, its centre relative to that.
 inline Triangle make_triangle(const TriangleSurface& surface, uint32_t index, Vec3 position, Vec3 centre) {
     Triangle r;
     surface.corners(index, r.vertices);
@@ -28,12 +38,7 @@ inline Triangle make_triangle(const TriangleSurface& surface, uint32_t index, Ve
     Vec3 front = surface.normal(index);
     r.from_behind = dot(front, centre - r.vertices[0]) < 0.0f;
     r.normal = r.from_behind ? -front : front;
-    r.index = index;
-    r.original = surface.original(index);
-    const uint8_t convex = surface.convex_edges(index), concave = surface.concave_edges(index);
-    r.touching = r.from_behind ? concave : convex;
-    r.bent = convex | concave;
-    r.sharp = surface.sharp_edges(index);
+    r.name(surface, index);
     return r;
 }
 

@@ -10,6 +10,8 @@ namespace {
 // Linear casts end after a handful of rounds (the distance is a convex function of the fraction and the steps are
 // Newton's), grazing ones after about 30. A turning shape that slides along the other without touching takes the most.
 constexpr int most_rounds = 1000;
+// What is that far apart, in parts of the shape's reach, is not near in the sense of those below.
+constexpr double path_slack = 1e-3;
 constexpr double near_linear = 4e-6, near_turning = 5e-5, near_of_larger = 1e-7, near_of_larger_turning = 1e-6;
 
 // One shape and its motion.
@@ -253,6 +255,40 @@ bool advance(Probe& probe, const Mover& a, const Mover& b, double max_fraction, 
 // edge from its own plane on.
 bool passes_from_behind(Vec3d normal, Vec3d front) { return dot(normal, front) < -1e-6; }
 
+// A box or ball on its way, which a shape never leaves, seen from a mesh that does not turn.
+struct SolidPath {
+    Vec3d from, along, half;
+    double radius;  // of the ball; negative: it is the box
+    double slack;   // what stays that far apart is not hit
+    const Mover& shape;
+    Mat3d rotation;  // of the shape at the start, seen from the mesh
+
+    // Whether it stays outside a plane, given with a normal of any length, up to that fraction.
+    bool stays_outside(Vec3d normal, Vec3d point, double fraction, double more_slack) const {
+        const Vec3d size{absolute(normal.x), absolute(normal.y), absolute(normal.z)};
+        const double begin = dot(normal, from - point), end = begin + fraction * dot(normal, along);
+        const double reach = radius < 0.0 ? dot(size, half) : radius * length(normal);
+        return minimum(begin, end) > reach + (slack + more_slack) * (size.x + size.y + size.z);
+    }
+    // Whether it certainly passes by a triangle: above or below its plane, or beyond one of its sides.
+    bool misses(const Vec3 (&corners)[3], Vec3 front, double fraction) const {
+        const Vec3d p[3] = {to_double(corners[0]), to_double(corners[1]), to_double(corners[2])}, n = to_double(front);
+        double far = 0.0;
+        for (Vec3d corner : p) far = maximum(far, largest_component(corner - from));
+        const double more = 8.0 * near_of_larger_turning * far;
+        if (stays_outside(n, p[0], fraction, more) || stays_outside(-n, p[0], fraction, more)) return true;
+        for (int i = 0; i < 3; ++i)
+            if (stays_outside(cross(p[(i + 1) % 3] - p[i], n), p[i], fraction, more)) return true;
+        if (radius < 0.0) return false;
+        // As the shape lies at the start, and farther by how far it turns.
+        const Vec3d away = dot(n, from - p[0]) < 0.0 ? -n : n;
+        const double begin = dot(away, from - p[0]), end = begin + fraction * dot(away, along);
+        const double turned = absolute(static_cast<double>(shape.motion.angle)) * radius;
+        const double low = shape.extent(rotation, -away) + shape.shape.rounding + turned;
+        return minimum(begin, end) > low + 2.0 * (slack + more);
+    }
+};
+
 bool cast_triangles(const Geometry& mesh, const Motion& motion_a, const Geometry& b, const Motion& motion_b,
                     double max_fraction, CastHit& hit, bool fresh_only) {
     // B's path seen from the mesh: a box about B's pivot that holds B however it turns, and moves as B does.
@@ -278,9 +314,17 @@ bool cast_triangles(const Geometry& mesh, const Motion& motion_a, const Geometry
     bool any = false;
     double limit = max_fraction;
     const TriangleSurface surface(mesh);
+    const SolidPath path{from,
+                         along,
+                         half,
+                         mover.turns() ? reach : -1.0,
+                         path_slack * reach + near_of_larger_turning * length(along),
+                         mover,
+                         exact_rotation(turn)};
     walk_along(surface, {from, along, half}, limit, [&](uint32_t index) {
         Vec3 corners[3];
         surface.corners(index, corners);
+        if (motion_a.angle == 0.0f && path.misses(corners, surface.normal(index), limit)) return limit;
         Geometry core;
         core.kind = GeometryKind::triangle;
         core.triangle = corners;

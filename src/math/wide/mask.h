@@ -1,5 +1,5 @@
 // Masks of lanes as a machine likes them best: a mask register where there is one, else a vector. For chains of
-// comparisons, of which only the bits are wanted in the end, and for listing the lanes that passed.
+// comparisons, of which only the bits are wanted in the end, and for packing the lanes that passed.
 #pragma once
 
 #include "math/wide/wide.h"
@@ -59,6 +59,26 @@ LENDULET_FORCE_INLINE uint32_t lane_bits(LaneMask<F> mask) {
     else
 #endif
         return mask_bits(mask);
+}
+
+// Writes the lanes of `bits` one after the other to `to`, which needs room for all lanes: what stands behind the packed
+// ones is unset.
+template <class F>
+LENDULET_FORCE_INLINE void store_packed(float* to, uint32_t bits, F value) {
+#if defined(__AVX512F__)
+    if constexpr (sizeof(F) == 64) {
+        _mm512_storeu_ps(to, _mm512_maskz_compress_ps(static_cast<__mmask16>(bits), (__m512)value));
+        return;
+    }
+#endif
+#if defined(__AVX2__)
+    if constexpr (sizeof(F) == 32) {
+        __m128i bytes = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(detail::lanes_of_byte.lane[bits]));
+        _mm256_storeu_ps(to, _mm256_permutevar8x32_ps((__m256)value, _mm256_cvtepu8_epi32(bytes)));
+        return;
+    }
+#endif
+    for (; bits; bits &= bits - 1) *to++ = lane(value, __builtin_ctz(bits));
 }
 
 // Writes first + i for each bit i of `bits`, rising, to `to`, which needs room for all lanes of F: what stands behind

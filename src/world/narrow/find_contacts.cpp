@@ -237,7 +237,9 @@ private:
     void collide_mesh(ColliderPair& p, uint32_t index, float margin) {
         for (uint32_t i = 1; i < p.count; ++i) prefetch<3>(&world_.records[p.first_record + i]);
         PairCache& cache = world_.pairs.caches[index];
-        Manifold manifolds[max_mesh_manifolds];
+        // Without initial values, as the room for old contacts.
+        alignas(Manifold) std::byte manifold_room[max_mesh_manifolds * sizeof(Manifold)];
+        auto* manifolds = reinterpret_cast<Manifold*>(manifold_room);
         int count = collide(collide_input(world_, p, margin), cache, settings(), manifolds, p.capacity,
                             &world_.pairs.near_triangles[p.surface]);
         const ShapeFrame &a = world_.frames[collider_a(p)], &b = world_.frames[collider_b(p)];
@@ -329,7 +331,10 @@ private:
         }
     }
 
-    CollideSettings settings() const { return {world_.config.simplex, world_.narrow_kernels.filter_triangles}; }
+    CollideSettings settings() const {
+        const NarrowKernels& kernels = world_.narrow_kernels;
+        return {world_.config.simplex, kernels.filter_triangles, kernels.clip_over_triangles};
+    }
 
     WorldData& world_;
     NarrowScratch& scratch_;

@@ -8,6 +8,7 @@
 #include "collision/batch/frame.h"
 #include "collision/batch/round.h"
 #include "collision/mesh/filter.h"
+#include "collision/mesh/over_triangle.h"
 #include "solver/contact.h"
 
 namespace lendulet {
@@ -61,6 +62,7 @@ struct NarrowKernels {
     void (*collide_segments)(RoundBatch&, BatchManifold*);
     void (*collide_box_balls)(RoundBatch&, BatchManifold*);
     FilterTriangles filter_triangles;
+    ClipOverTriangles clip_over_triangles;
 };
 
 // The kernels for 1, 4, 8 or 16 lanes in the best instructions this machine has for that width.

@@ -3,8 +3,10 @@
 // of a wider machine.
 #include <type_traits>
 
+#include "geometry/hull.h"
 #include "math/turned.h"
 #include "math/wide/gather.h"
+#include "math/wide/mask.h"
 #include "math/wide/wide.h"
 #include "world/narrow/kernels.h"
 
@@ -17,6 +19,8 @@ namespace {
 
 #include "collision/mesh/filter.inl"
 
+#include "collision/mesh/over_triangle.inl"
+
 #include "world/narrow/recycle.inl"
 
 template <int W>
@@ -27,7 +31,8 @@ constexpr NarrowKernels make_narrow_kernels() {
             collide_boxes<W>,
             collide_segments<W>,
             collide_box_balls<W>,
-            filter_triangles<(W < 4 ? 4 : W)>};
+            filter_triangles<(W < 4 ? 4 : W)>,
+            clip_over_triangles<(W < 4 ? 4 : W)>};
 }
 
 }  // namespace
