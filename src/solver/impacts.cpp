@@ -323,6 +323,7 @@ void prepare_bouncing(const SolverBodies& bodies, const ContactRecord* records, 
     c.pull = 0.0f;
     for (int side = 0; side < 2; ++side) {
         const auto body = static_cast<size_t>(side == 0 ? c.a : c.b);
+        if (body < reserved_bodies) continue;  // it never turns, and its block is never begun
         const BodyBlock& block = bodies.blocks[body / block_bodies];
         const size_t at = body % block_bodies;
         const Vec3 push{block.acceleration[0][at], block.acceleration[1][at], block.acceleration[2][at]};
