@@ -61,8 +61,7 @@ PairSet make_pile_set(int bodies) {
     PairSet set{"box-box pile", true, {}, boxes_of(pile.world)};
     // Walls are large and few, and do not meet each other here.
     std::vector<Bounds> sorted = bounds_of(set.boxes);
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [](const Bounds& a, const Bounds& b) { return a.lower.x < b.lower.x; });
+    std::sort(sorted.begin(), sorted.end(), [](const Bounds& a, const Bounds& b) { return a.lower.x < b.lower.x; });
     std::vector<std::pair<int32_t, int32_t>> pairs;
     auto is_wall = [&](int32_t i) { return max_component(set.boxes[static_cast<size_t>(i)].half) > 1.0f; };
     for (size_t i = 0; i < sorted.size(); ++i)

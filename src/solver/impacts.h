@@ -1,4 +1,5 @@
-// Bounces at their time of impact. Runs before each substep over the manifolds that can bounce.
+// Impacts at their time: bounces, and contacts of bodies so fast that rows of a whole substep cannot follow
+// (contact_swift). Runs before each substep over the manifolds of these.
 #pragma once
 
 #include <cstdint>

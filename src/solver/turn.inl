@@ -53,7 +53,7 @@ LENDULET_FORCE_INLINE QuatT<F> long_turn_less_one(Vec3T<F> turn) {
     const F one = splat<F>(1.0f), size2 = dot(turn, turn);
     F parts = one;
     for (int i = 0; i < most_halvings; ++i) parts = select(size2 > parts * parts, parts + parts, parts);
-    QuatT<F> q = turn_quaternion((one / parts) * turn);
+    QuatT<F> q = turn_quaternion(at_most_a_radian((one / parts) * turn));
     for (F done = one; mask_bits(done < parts); done = done + done) {
         auto more = done < parts;
         const QuatT<F> twice = multiply(q, q);

@@ -97,6 +97,18 @@ TEST(Extremes, LongSteps) {
     EXPECT_EQ(world.check(), "");
 }
 
+// In a substep of 1/8 s it turns by hundreds of radians about its axis, and so does that about L.
+TEST(Extremes, ATopTurnsByHundredsOfRadiansInASubstep) {
+    World world = WorldBuilder{}.no_gravity().build().value();
+    const BodyId id =
+        world.add_rigid_body({.shape = Capsule{0.5f, 0.05f}, .angular_velocity = {1500.0f, 2000.0f, 1000.0f}}).value();
+    const Vec3 L = world.get(id).angular_momentum();
+    run(world, 5, 1.0f);
+    EXPECT_TRUE(all_finite(world));
+    EXPECT_EQ(world.statistics().contained_bodies, 0);
+    EXPECT_EQ(world.get(id).angular_momentum(), L);
+}
+
 TEST(Extremes, StrongGravity) {
     World world = WorldBuilder{}.down_gravity(1e6f).build().value();
     add_floor(world);
