@@ -7,22 +7,11 @@
 #include <vector>
 
 #include "lendulet/lendulet.h"
+#include "numbers.h"
 #include "scale.h"
 
 namespace lendulet {
 namespace {
-
-struct Numbers {
-    uint32_t state;
-    float in(float low, float high) {
-        state = state * 1664525u + 1013904223u;
-        return low + (high - low) * static_cast<float>(state >> 8) / 16777216.0f;
-    }
-    Quat turn() {
-        const float x = in(-1.0f, 1.0f), y = in(-1.0f, 1.0f), z = in(-1.0f, 1.0f), w = in(0.2f, 1.0f);
-        return normalize(Quat{x, y, z, w});
-    }
-};
 
 constexpr int kinds = 6;
 
@@ -54,7 +43,7 @@ struct Meeting {
     World world;
     float beside;
 };
-Meeting meeting(Numbers numbers, int kind_a, int kind_b, float speed, float restitution) {
+Meeting meeting(RandomNumbers numbers, int kind_a, int kind_b, float speed, float restitution) {
     Meeting m{WorldBuilder{}.no_gravity().bounciness(restitution).build().value(), 0.0f};
     const float y = numbers.in(-0.4f, 0.4f), z = numbers.in(-0.4f, 0.4f), way = numbers.in(0.5f, 2.5f) * speed / 60.0f;
     const Quat turn_a = numbers.turn(), turn_b = numbers.turn();

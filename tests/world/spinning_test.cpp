@@ -6,22 +6,11 @@
 #include <tuple>
 
 #include "lendulet/lendulet.h"
+#include "numbers.h"
 #include "scale.h"
 
 namespace lendulet {
 namespace {
-
-struct Numbers {
-    uint32_t state;
-    float in(float low, float high) {
-        state = state * 1664525u + 1013904223u;
-        return low + (high - low) * static_cast<float>(state >> 8) / 16777216.0f;
-    }
-    Vec3 vector(float most) {
-        const float x = in(-most, most), y = in(-most, most), z = in(-most, most);
-        return {x, y, z};
-    }
-};
 
 Shape slender(int kind, float size) {
     if (kind == 0) return Capsule{size, 0.3f * size};
@@ -31,7 +20,7 @@ Shape slender(int kind, float size) {
 }
 
 // `count` bodies thrown onto a plane, each spinning at up to `spin`.
-World thrown(Numbers& numbers, int kind, int count, float spin) {
+World thrown(RandomNumbers& numbers, int kind, int count, float spin) {
     World world = WorldBuilder().sleep(false).build().value();
     world.add_static_body({.shape = Plane{}}).value();
     for (int i = 0; i < count; ++i) {
@@ -57,7 +46,7 @@ TEST_P(Spinning, LandsWithoutGainingEnergy) {
     const auto [kind, dt] = GetParam();
     for (float spin : {100.0f, 300.0f, 1000.0f, 2900.0f})
         for (int i = 0; i < scaled(100, 10); ++i) {
-            Numbers numbers{static_cast<uint32_t>(7919 * i + 1)};
+            RandomNumbers numbers{static_cast<uint32_t>(7919 * i + 1)};
             World world = thrown(numbers, kind, 1, spin);
             const double before = energy(world);
             for (int k = 0; k < 10; ++k) {
@@ -101,7 +90,7 @@ TEST(SpinningHeap, StaysFinite) {
     for (float dt : {1.0f / 60.0f, 1.0f / 30.0f, 0.15f})
         for (float spin : {100.0f, 1000.0f, 2900.0f})
             for (int i = 0; i < scaled(40, 5); ++i) {
-                Numbers numbers{static_cast<uint32_t>(7919 * i + 1)};
+                RandomNumbers numbers{static_cast<uint32_t>(7919 * i + 1)};
                 World world = thrown(numbers, i % 4, 4, spin);
                 for (int k = 0; k < 10; ++k) {
                     ASSERT_TRUE(world.update(dt).ok());
