@@ -114,5 +114,43 @@ TEST(FastBalls, MeetOnlyWhereTheyWould) {
             }
 }
 
+// Sixty of them in a box of 8 m, without gravity.
+class FastCrowd : public testing::TestWithParam<float> {};
+
+TEST_P(FastCrowd, GainsNoEnergy) {
+    const float restitution = GetParam();
+    for (float speed : {30.0f, 100.0f, 300.0f}) {
+        World world = WorldBuilder{}.no_gravity().bounciness(restitution).build().value();
+        for (int axis = 0; axis < 3; ++axis)
+            for (float side : {-5.0f, 5.0f}) {
+                Vec3 half{6.0f, 6.0f, 6.0f}, place{};
+                set_component(half, axis, 1.0f);
+                set_component(place, axis, side);
+                world.add_static_body({.shape = Box{half}, .position = Position{} + place}).value();
+            }
+        RandomNumbers numbers{3};
+        for (int i = 0; i < 60; ++i) {
+            const Vec3 place = numbers.vector(3.3f), velocity = numbers.vector(speed);
+            const Quat turn = numbers.turn();
+            world
+                .add_rigid_body({.shape = shape_of(i % kinds),
+                                 .position = Position{} + place,
+                                 .orientation = turn,
+                                 .velocity = velocity,
+                                 .angular_velocity = numbers.vector(10.0f)})
+                .value();
+        }
+        for (int k = 0; k < 6; ++k) world.update(1.0f / 60.0f).value();  // some begin within each other
+        double before = world.kinetic_energy();
+        for (int k = 0; k < scaled(120, 30); ++k) {
+            ASSERT_TRUE(world.update(1.0f / 60.0f).ok());
+            ASSERT_LT(world.kinetic_energy(), (1.0 + 1e-3) * before) << speed << " m/s, step " << k;
+            before = world.kinetic_energy();
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Restitutions, FastCrowd, testing::Values(0.0f, 0.5f, 0.9f));
+
 }  // namespace
 }  // namespace lendulet
