@@ -214,6 +214,36 @@ LENDULET_FORCE_INLINE Wide<float, W> following_lanes(const ContactRow<W, P>& c, 
     return select(c.turn_limit < splat<F>(0.5f * following_balls), one, near);
 }
 
+// Where lanes turn, the row takes over what it is in its new place; in the others that place is the row's.
+template <int W, int P>
+LENDULET_FORCE_INLINE void take_over(ContactRow<W, P>& c, ContactRow<W, P>& renewed, Wide<float, W> turns,
+                                     Wide<float, W> balls) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
+    auto turned = turns > zero;
+    c.n = select(turned, renewed.n, c.n);
+    c.t1 = select(turned, renewed.t1, c.t1);
+    c.turn_limit = select(turned, select(balls > zero, splat<F>(following_balls), zero - one), c.turn_limit);
+    if constexpr (P == 1) {
+        c.p[0].impulse = select(turned, renewed.p[0].impulse, c.p[0].impulse);
+        for (int i = 0; i < 2; ++i)
+            c.friction.tangent[i] = select(turned, renewed.friction.tangent[i], c.friction.tangent[i]);
+    }
+    c.shift = select(turned, renewed.shift, c.shift);
+    for (int j = 0; j < P; ++j) {
+        c.p[j].separation = select(turned, renewed.p[j].separation, c.p[j].separation);
+        if constexpr (P > 1) {
+            c.p[j].u = select(turned, renewed.p[j].u, c.p[j].u);
+            c.p[j].v = select(turned, renewed.p[j].v, c.p[j].v);
+        }
+    }
+    if constexpr (P > 1)
+        for (F& x : c.turn.shift) x = select(turned, zero, x);
+    renewed.n = c.n, renewed.t1 = c.t1;
+    if constexpr (P > 1)
+        for (int j = 0; j < P; ++j) renewed.p[j].u = c.p[j].u, renewed.p[j].v = c.p[j].v;
+}
+
 // Rows whose bodies have turned far since the start of the step; few ever come here, so bodies and manifolds are
 // fetched anew.
 //
@@ -274,32 +304,12 @@ template <int W, int P>
         const WideVelocity<F> A0 = load_start_at<W>(bodies.start, c.a), B0 = load_start_at<W>(bodies.start, c.b);
         const Vec3T<F> slip = (B0.v - A0.v) + (cross(B0.w, now.rb) - cross(A0.w, now.ra));
         now.start_slip = select(turned, slip, now.start_slip);
-        c.n = select(turned, renewed.n, c.n);
-        c.t1 = select(turned, renewed.t1, c.t1);
+        take_over<W, P>(c, renewed, turns, balls);
         c.ra = c.ra + gone;
         c.rb = c.rb + gone;
-        c.turn_limit = select(turned, select(balls > zero, splat<F>(following_balls), zero - one), c.turn_limit);
-        if constexpr (P == 1) {
-            c.p[0].impulse = select(turned, renewed.p[0].impulse, c.p[0].impulse);
-            for (int i = 0; i < 2; ++i)
-                c.friction.tangent[i] = select(turned, renewed.friction.tangent[i], c.friction.tangent[i]);
-        }
-        c.shift = select(turned, renewed.shift, c.shift);
-        for (int j = 0; j < P; ++j) {
-            c.p[j].separation = select(turned, renewed.p[j].separation, c.p[j].separation);
-            if constexpr (P > 1) {
-                c.p[j].u = select(turned, renewed.p[j].u, c.p[j].u);
-                c.p[j].v = select(turned, renewed.p[j].v, c.p[j].v);
-            }
-        }
-        if constexpr (P > 1)
-            for (F& x : c.turn.shift) x = select(turned, zero, x);
         c.lever_a = cross(now.ra, c.n);
         c.lever_b = cross(now.rb, c.n);
         c.start_approach = dot(c.n, now.start_slip);
-        renewed.n = c.n, renewed.t1 = c.t1;
-        if constexpr (P > 1)
-            for (int j = 0; j < P; ++j) renewed.p[j].u = c.p[j].u, renewed.p[j].v = c.p[j].v;
     }
     prepare_normals<W, P>(renewed, now.ra, now.rb, IA, IB, A.inverse_mass + B.inverse_mass);
     prepare_friction<W, P>(renewed, now.ra, now.rb, IA, IB, A.inverse_mass + B.inverse_mass);
