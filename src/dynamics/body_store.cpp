@@ -54,16 +54,20 @@ Vec3 BodyStore::angular_velocity(uint32_t slot) const {
 }
 
 Vec3 BodyStore::angular_velocity_of(uint32_t slot, Vec3 L) const {
+    if (mass[slot].round()) return mass[slot].inverse_inertia.x * L;
     Quat q = pose[slot].orientation;
     return rotate(q, multiply(mass[slot].inverse_inertia, rotate_inverse(q, L)));
 }
 
 SymMat3 BodyStore::inverse_inertia_world(uint32_t slot) const {
+    const float inverse = mass[slot].inverse_inertia.x;
+    if (mass[slot].round()) return {inverse, inverse, inverse, 0.0f, 0.0f, 0.0f};
     return rotate_diagonal(rotation_matrix<float>(QuatT<float>(pose[slot].orientation), 1.0f),
                            mass[slot].inverse_inertia);
 }
 
 Vec3 BodyStore::inertia_times(uint32_t slot, Vec3 w) const {
+    if (mass[slot].round()) return mass[slot].inertia.x * w;
     Quat q = pose[slot].orientation;
     return rotate(q, multiply(mass[slot].inertia, rotate_inverse(q, w)));
 }

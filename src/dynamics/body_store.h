@@ -29,6 +29,8 @@ struct BodyMass {
     float mass = 0.0f, inverse_mass = 0.0f;
     Vec3 inertia, inverse_inertia;  // principal
     float anisotropy = 1.0f;        // largest over smallest principal moment
+    // All moments are equal, as those of balls and cubes: the first one tells all, in any axes.
+    bool round() const { return anisotropy <= 1.0f; }
 };
 
 struct BodyForces {

@@ -41,6 +41,19 @@ struct BlockLanes {
     }
 };
 
+// Theta w for bodies turned by dq since the start of the step. Where all moments are equal that asks for no orientation.
+template <int W>
+LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> apply_moments(QuatT<Wide<float, W>> dq, const BlockLanes<W>& body,
+                                                          Vec3T<Wide<float, W>> w) {
+    using F = Wide<float, W>;
+    const BodyBlock& b = body.block;
+    const Vec3T<F> moments = body.get(b.inertia);
+    const Vec3T<F> of_round = moments.x * w;
+    auto round = body.get(b.anisotropy) <= splat<F>(1.0f);
+    if (mask_bits(round) == (1u << W) - 1) return of_round;
+    return select(round, of_round, apply_principal(multiply(dq, body.get(b.q0)), moments, w));
+}
+
 // Indices of W consecutive bodies.
 template <int W>
 struct Consecutive {
@@ -123,7 +136,7 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int
             QuatT<F> dq;
             load_displacement<W>(bodies.state.data(), c.index, dp, dq);
             Vec3T<F> rv = x.v - y.get(b.v_ref), rw = x.w - y.get(b.w_ref);
-            Vec3T<F> more_L = apply_principal(multiply(dq, y.get(b.q0)), y.get(b.inertia), rw);
+            Vec3T<F> more_L = apply_moments<W>(dq, y, rw);
             dv = y.get(b.dv) + rv;
             dL = y.get(b.dL) + more_L;
             L = L + more_L;
@@ -176,6 +189,11 @@ LENDULET_FORCE_INLINE Vec3T<F> even_change(Vec3T<F> now, Vec3T<F> before, F free
 // body any more, it stays finite.
 inline constexpr float most_speed = 2e4f, most_spin = 6e3f;
 
+template <class F>
+LENDULET_FORCE_INLINE bool exceeds(Vec3T<F> speed, float most) {
+    return mask_bits(dot(speed, speed) > splat<F>(most * most)) != 0;
+}
+
 // How much of a speed stays; 1 but for those beyond `most`.
 template <class F>
 LENDULET_FORCE_INLINE F kept_share(Vec3T<F> speed, float most) {
@@ -196,14 +214,14 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
         Vec3T<F> dp;
         QuatT<F> dq, q0 = y.get(b.q0);
         load_displacement<W>(state, c.index, dp, dq);
-        Vec3T<F> inverse = y.get(b.inverse_inertia), start_w = y.get(b.start_w);
+        const Vec3T<F> inverse = y.get(b.inverse_inertia), start_w = y.get(b.start_w), start_v = y.get(b.start_v);
         F anisotropy = y.get(b.anisotropy), free = y.get(b.free);
         Vec3T<F> dv = x.v - y.get(b.v_ref), dw = x.w - y.get(b.w_ref);
-        Vec3T<F> more_L = apply_principal(multiply(dq, q0), y.get(b.inertia), dw);
+        Vec3T<F> more_L = apply_moments<W>(dq, y, dw);
         Vec3T<F> L = y.get(b.L) + more_L;
-        const Vec3T<F> start_v = y.get(b.start_v);
-        const F speed_share = kept_share(start_v + x.v, most_speed), spin_share = kept_share(start_w + x.w, most_spin);
-        if (mask_bits(speed_share * spin_share < splat<F>(1.0f))) {  // and nothing of it is repeated
+        if (exceeds(start_v + x.v, most_speed) || exceeds(start_w + x.w, most_spin)) {  // and nothing of it is repeated
+            const F speed_share = kept_share(start_v + x.v, most_speed),
+                    spin_share = kept_share(start_w + x.w, most_spin);
             auto calm = x.inverse_mass * (splat<F>(1.0f) - speed_share * spin_share) <= zero;
             x.v = select(calm, x.v, speed_share * (start_v + x.v) - start_v);
             x.w = select(calm, x.w, spin_share * (start_w + x.w) - start_w);
@@ -224,9 +242,15 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
         y.put(b.dL, more_L);
         Vec3T<F> moved = splat<F>(k.h) * (start_v + (x.v - half * change_v));
         dp = dp + moved;
-        dq = turn_at_constant_L<W>(dq, q0, L - half * change_L, inverse, start_w + x.w, anisotropy, k.h);
-
-        SymMat3T<F> I = rotate_diagonal(rotation_matrix<F>(multiply(dq, q0), splat<F>(1.0f)), inverse);
+        auto round = anisotropy <= splat<F>(1.0f);
+        const bool all_round = mask_bits(round) == (1u << W) - 1;
+        SymMat3T<F> I = load_inverse_inertia<W>(bodies.inertia.data(), c.index);
+        dq = turn_at_constant_L<W>(dq, q0, L - half * change_L, inverse, start_w + x.w, anisotropy, I, k.h);
+        if (!all_round) {
+            const SymMat3T<F> turned = rotate_diagonal(rotation_matrix<F>(multiply(dq, q0), splat<F>(1.0f)), inverse);
+            I = {select(round, I.xx, turned.xx), select(round, I.yy, turned.yy), select(round, I.zz, turned.zz),
+                 select(round, I.xy, turned.xy), select(round, I.xz, turned.xz), select(round, I.yz, turned.yz)};
+        }
         const bool second_half = k.joints && k.last;
         if (second_half) {
             F h = splat<F>(0.5f * k.h) * mode.split;
@@ -266,7 +290,7 @@ void settle_bodies(SolverBodies& bodies, int begin, int end) {
         QuatT<F> dq;
         load_displacement<W>(bodies.state.data(), c.index, dp, dq);
         Vec3T<F> rw = x.w - y.get(b.w_ref);
-        Vec3T<F> L = y.get(b.L) + apply_principal(multiply(dq, y.get(b.q0)), y.get(b.inertia), rw);
+        Vec3T<F> L = y.get(b.L) + apply_moments<W>(dq, y, rw);
         Vec3T<F> change_v = x.v - y.get(b.v_start), change_L = L - y.get(b.L_start);
         F momentum[4] = {L.x, L.y, L.z, y.get(b.anisotropy)};
         F changes[8] = {change_v.x, change_v.y, change_v.z, zero, change_L.x, change_L.y, change_L.z, zero};

@@ -68,10 +68,11 @@ void ColourSchedule::colour(ColourSorter& sorter, const ContactEnds* ends, int c
                             const ContactCut& cut) const {
     const bool near = cut.near.begin < cut.near.end;
     const int part = (cut.near.end - cut.near.begin + near_places - 1) / near_places;
-    sorter.begin(bodies.count, count, contact_classes, tiles, near ? near_places : 1);
+    sorter.begin(bodies.count, count, contact_classes, tiles, near ? 2 * near_places : 2);
     for (int i = 0; i < count; ++i) {
         const ContactEnds& e = ends[i];
-        sorter.add(e.a, !e.fixed_a, e.b, true, e.kind, near ? (e.b - cut.near.begin) / part : 0);
+        const int place = near ? (e.b - cut.near.begin) / part : 0;
+        sorter.add(e.a, !e.fixed_a, e.b, true, e.kind, 2 * place + e.idle);
     }
     sorter.end();
 }

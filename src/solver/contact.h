@@ -48,6 +48,7 @@ struct ContactEnds {
     uint8_t kind;  // see contact_kind()
     bool fixed_a;  // A is not moved by constraints
     bool bounces;  // with a restitution
+    bool idle;     // held nothing in the last step
 };
 
 // What few contacts have, by record, where any material of the world has it.

@@ -2,6 +2,15 @@
 
 enum class Pass { warm_start, solve, relax };
 
+// Less than the sum of the points' impulses times their distances from the centre.
+template <int W, int P>
+LENDULET_FORCE_INLINE Wide<float, W> least_lever(const ContactRow<W, P>& c) {
+    using F = Wide<float, W>;
+    F sum = splat<F>(0.0f);
+    for (int j = 0; j < P; ++j) sum = sum + c.p[j].impulse * maximum(absolute(c.p[j].u), absolute(c.p[j].v));
+    return splat<F>(0.999f) * sum;
+}
+
 // Friction of the whole patch as one block (t1, t2, twist), limited by the round Coulomb cone on the total normal
 // impulse: it sticks while the impulse that stops the sliding is within the static cone, and slides with the dynamic
 // coefficient otherwise (thesis 3.3.4 with THESIS-NOTES). Returns the impulse on B and the angular impulse about n.
@@ -11,16 +20,11 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
                                           Vec3T<Wide<float, W>>& angular) {
     using F = Wide<float, W>;
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
-    F total = c.p[0].impulse, lever = zero, twist = zero;
+    F total = c.p[0].impulse, twist = zero;
     F x = dot(slip, c.t1), y = dot(slip, t2), f1, f2, ft = zero;
     const F* m = c.friction.mass;
     if constexpr (P > 1) {
-        lever = zero;
-        total = zero;
-        for (int j = 0; j < P; ++j) {
-            total = total + c.p[j].impulse;
-            lever = lever + c.p[j].impulse * square_root(c.p[j].u * c.p[j].u + c.p[j].v * c.p[j].v);
-        }
+        for (int j = 1; j < P; ++j) total = total + c.p[j].impulse;
         twist = dot(c.n, spin);
         f1 = c.friction.tangent[0] - (m[0] * x + m[1] * y + m[2] * twist);
         f2 = c.friction.tangent[1] - (m[1] * x + m[3] * y + m[4] * twist);
@@ -29,9 +33,13 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
         f1 = c.friction.tangent[0] - (m[0] * x + m[1] * y);
         f2 = c.friction.tangent[1] - (m[1] * x + m[2] * y);
     }
+    // Roots are dear, and most rows do without: they stick, or carry nothing.
     F sticking = c.static_friction * total, sliding = c.dynamic_friction * total;
     F size2 = f1 * f1 + f2 * f2;
-    F scale = select(size2 > sticking * sticking, sliding / maximum(square_root(size2), splat<F>(1e-30f)), one);
+    auto slides = size2 > sticking * sticking;
+    F scale = select(slides, zero, one);
+    auto drags = select(slides, sliding, zero) > zero;
+    if (mask_bits(drags)) scale = select(drags, sliding / maximum(square_root(size2), splat<F>(1e-30f)), scale);
     f1 = scale * f1;
     f2 = scale * f2;
     linear = (f1 - c.friction.tangent[0]) * c.t1 + (f2 - c.friction.tangent[1]) * t2;
@@ -39,8 +47,18 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
     c.friction.tangent[1] = f2;
     angular = zero_vector<F>();
     if constexpr (P > 1) {
-        F hold = c.static_friction * lever, slide = c.dynamic_friction * lever;
-        ft = select(absolute(ft) > hold, select(ft > zero, slide, zero - slide), ft);
+        const F size = absolute(ft);
+        F hold = least_lever<W, P>(c) * c.static_friction;
+        if (mask_bits(select(size > hold, total, zero) > zero)) {
+            F lever = zero;
+            for (int j = 0; j < P; ++j)
+                lever = lever + c.p[j].impulse * square_root(c.p[j].u * c.p[j].u + c.p[j].v * c.p[j].v);
+            hold = c.static_friction * lever;
+            F slide = c.dynamic_friction * lever;
+            ft = select(size > hold, select(ft > zero, slide, zero - slide), ft);
+        } else {
+            ft = select(total > zero, ft, zero);
+        }
         angular = (ft - c.friction.twist) * c.n;
         c.friction.twist = ft;
     }
@@ -156,25 +174,60 @@ template <int W, int P>
     store_velocity_at<W>(bodies.state, c.a, A);
 }
 
+// Whether all lanes are 0, which is what no number is not.
+template <int W>
+LENDULET_FORCE_INLINE bool all_zero(Wide<float, W> sum_of_sizes) {
+    return mask_bits(sum_of_sizes <= splat<Wide<float, W>>(0.0f)) == (1u << W) - 1;
+}
+
+// Whether no lane has an impulse.
+template <int W, int P>
+LENDULET_FORCE_INLINE bool holds_nothing(const ContactRow<W, P>& c) {
+    Wide<float, W> held = absolute(c.friction.tangent[0]) + absolute(c.friction.tangent[1]);
+    if constexpr (P > 1) held = held + absolute(c.friction.twist);
+    for (int j = 0; j < P; ++j) held = held + c.p[j].impulse;
+    return all_zero<W>(held);
+}
+
+// Whether a sweep left all impulses as they were.
+template <int W, int P>
+LENDULET_FORCE_INLINE bool changes_nothing(const Wide<float, W> change[P], Vec3T<Wide<float, W>> overdue) {
+    Wide<float, W> sum = (absolute(overdue.x) + absolute(overdue.y)) + absolute(overdue.z);
+    for (int j = 0; j < P; ++j) sum = sum + absolute(change[j]);
+    return all_zero<W>(sum);
+}
+
 // g.fixed_a and k.moved are the same for all rows of a loop: branches cost nothing here, copies of the kernel would
-// only take longer to build. `first`: number of the first manifold in the group.
+// only take longer to build. `first`: number of the first manifold in the group. Rows that give and hold nothing stop
+// half way: what is left of a pass adds zeros then.
 template <int W, int P, Pass pass>
 LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& bodies, const SubstepConstants& k,
                                         const ContactGroup& g, int first) {
     using F = Wide<float, W>;
     BodyState* states = bodies.state;
     const bool fixed_a = g.fixed_a;
-    Vec3T<F> drift_a = zero_vector<F>(), drift_b;
+    const bool empty = pass != Pass::solve && holds_nothing<W, P>(c);
+    if (pass == Pass::warm_start && empty) return;
     WideVelocity<F> A{}, B = load_velocity_at<W>(states, c.b);
-    SymMat3T<F> IA{}, IB = load_inverse_inertia_at<W>(bodies.inertia, c.b, B, drift_b);
-    if (!fixed_a) {
-        A = load_velocity_at<W>(states, c.a);
-        IA = load_inverse_inertia_at<W>(bodies.inertia, c.a, A, drift_a);
-    }
+    if (!fixed_a) A = load_velocity_at<W>(states, c.a);
     Vec3T<F> t2 = cross(c.n, c.t1), linear, angular;
     F change[P];
+    MovedArms<F> now;
+    if constexpr (pass == Pass::solve) {
+        if (k.moved) follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
+        sweep_normals<W, P, true>(c, A, B, t2, k, change);
+        if (changes_nothing<W, P>(change, c.overdue)) return;
+    } else if (pass == Pass::relax && empty) {
+        c.overdue = zero_vector<F>();
+        now = follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
+        sweep_normals<W, P, false>(c, A, B, t2, k, change);
+        if (changes_nothing<W, P>(change, c.overdue)) return;
+    }
+    Vec3T<F> drift_a = zero_vector<F>(), drift_b;
+    SymMat3T<F> IA{}, IB = load_inverse_inertia_at<W>(bodies.inertia, c.b, B, drift_b);
+    if (!fixed_a) IA = load_inverse_inertia_at<W>(bodies.inertia, c.a, A, drift_a);
     if constexpr (pass == Pass::warm_start) {
-        MovedArms<F> now{c.ra, c.rb, c.start_slip, splat<F>(0.0f), splat<F>(0.0f)};
+        now = {c.ra, c.rb, c.start_slip, splat<F>(0.0f), splat<F>(0.0f)};
         if (k.moved) now = update_displacement<W, P>(c, states, t2);
         for (int j = 0; j < P; ++j) change[j] = c.p[j].impulse;
         apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);
@@ -184,17 +237,17 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
         B.w = B.w + IB * (cross(now.rb, linear) + angular);
         A.w = A.w - IA * (cross(now.ra, linear) + angular);
     } else if constexpr (pass == Pass::solve) {
-        if (k.moved) follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
-        sweep_normals<W, P, true>(c, A, B, t2, k, change);
         apply_normals<W, P, true>(c, A, B, IA, IB, t2, change);
     } else {
-        if (!fixed_a) {
-            Vec3T<F> drift = drift_b - drift_a, moment = cross(held_impulse<W, P>(c, t2), drift);
-            auto moving = dot(drift, drift) > splat<F>(k.still_drift * k.still_drift);
-            c.overdue = select(moving, moment, zero_vector<F>());
+        if (!empty) {
+            if (!fixed_a) {
+                Vec3T<F> drift = drift_b - drift_a, moment = cross(held_impulse<W, P>(c, t2), drift);
+                auto moving = dot(drift, drift) > splat<F>(k.still_drift * k.still_drift);
+                c.overdue = select(moving, moment, zero_vector<F>());
+            }
+            now = follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
+            sweep_normals<W, P, false>(c, A, B, t2, k, change);
         }
-        MovedArms<F> now = follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
-        sweep_normals<W, P, false>(c, A, B, t2, k, change);
         apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);
         Vec3T<F> slip = (now.start_slip + (B.v - A.v)) + (cross(B.w, now.rb) - cross(A.w, now.ra)), spin{};
         if constexpr (P > 1) spin = c.turn.start_spin + (B.w - A.w);

@@ -47,8 +47,9 @@ struct PatchFriction<F, 1> {
 // Squares of the sine of half an angle, see MovedArms::turned: from 0.07 rad on a row of corners and a face turns with
 // its bodies, all others get new masses from 0.2 rad on.
 inline constexpr float near_turn = 1.2e-3f, far_turn = 0.01f;
-// As far_turn, for rows of two balls; and what tells that such a row follows them.
-inline constexpr float turn_of_balls = 0.0101f, following_balls = -2.0f;
+// As far_turn, for rows of two balls; and what tells that such a row follows them. From `never` on turning changes
+// nothing: sines are at most 1.
+inline constexpr float turn_of_balls = 0.0101f, following_balls = -2.0f, never = 2.0f;
 // Square of the growth of an arm, in parts of its length, from which on a row gets new masses, and one of balls a new
 // normal.
 inline constexpr float far_swing = 0.04f;
@@ -302,6 +303,18 @@ struct RowPlace {
     }
 };
 
+// Whether a body may turn about its own centre and masses stay: it cannot be moved, or it is a ball that touches with its
+// surface. `arm`: of the contact.
+template <class F>
+LENDULET_FORCE_INLINE F turns_freely(const SymMat3T<F>& I, Vec3T<F> arm, Vec3T<F> n, F radius) {
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
+    const Vec3T<F> core = arm - radius * n;
+    F is = select(dot(core, core) <= splat<F>(0.05f) * (radius * radius), one, zero);
+    is = select(maximum(absolute(I.xx - I.yy), absolute(I.xx - I.zz)) > zero, zero, is);
+    is = select(maximum(maximum(absolute(I.xy), absolute(I.xz)), absolute(I.yz)) > zero, zero, is);
+    return select(I.xx > zero, is, one);
+}
+
 template <int W, int P>
 LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& group, const ContactRecord* records,
                                        const SolverBodies& bodies, int first) {
@@ -353,6 +366,10 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     SymMat3T<F> IA = load_inverse_inertia_at<W>(bodies.inertia.data(), c.a);
     SymMat3T<F> IB = load_inverse_inertia_at<W>(bodies.inertia.data(), c.b);
     F inverse_masses = A.inverse_mass + B.inverse_mass;
+    if constexpr (P == 1) {
+        const F free = minimum(turns_freely(IA, c.ra, c.n, c.radius_a), turns_freely(IB, c.rb, -c.n, c.radius_b));
+        c.turn_limit = select(free > zero, splat<F>(never) + select(balls > zero, zero, splat<F>(1.0f)), c.turn_limit);
+    }
     prepare_normals<W, P>(c, c.ra, c.rb, IA, IB, inverse_masses);
     prepare_friction<W, P>(c, c.ra, c.rb, IA, IB, inverse_masses);
     Vec3T<F> f{m.friction[0], m.friction[1], m.friction[2]};
@@ -384,7 +401,8 @@ void store_rows(const ContactGroup& g, ContactRecord* records, int begin, int en
     for (int i = begin; i < end; ++i) {
         const ContactRow<W, P>& c = rows[i];
         Vec3T<F> f = c.friction.tangent[0] * c.t1 + c.friction.tangent[1] * cross(c.n, c.t1);
-        F impulses[8] = {zero, zero, zero, zero, f.x, f.y, f.z, zero};
+        // Of rows that were passed over zeros have another sign.
+        F impulses[8] = {zero, zero, zero, zero, f.x + zero, f.y + zero, f.z + zero, zero};
         float separation[P][W];
         for (int j = 0; j < P; ++j) {
             impulses[j] = c.p[j].impulse;
@@ -393,7 +411,7 @@ void store_rows(const ContactGroup& g, ContactRecord* records, int begin, int en
             s = select(c.p[j].separation < splat<F>(0.1f * far_separation), c.p[j].separation + s, c.p[j].separation);
             store_wide(separation[j], s);
         }
-        if constexpr (P > 1) impulses[7] = c.friction.twist;
+        if constexpr (P > 1) impulses[7] = c.friction.twist + zero;
         int live = g.count - i * W < W ? g.count - i * W : W;
         int32_t index[W];
         for (int l = 0; l < W; ++l) index[l] = static_cast<int32_t>(g.order[i * W + (l < live ? l : 0)]);

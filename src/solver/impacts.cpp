@@ -65,17 +65,21 @@ struct Side {
         const BodyBlock::Lanes* q0 = block->q0;
         return dq * Quat{q0[0][at], q0[1][at], q0[2][at], q0[3][at]};
     }
+    bool is_round() const { return block->anisotropy[at] <= 1.0f; }
     SymMat3 inverse_inertia_at(Quat dq) const {
+        if (is_round()) return now.inverse_inertia;
         return rotate_diagonal(rotation_matrix<float>(QuatT<float>(orientation(dq)), 1.0f),
                                lanes(block->inverse_inertia));
     }
-    Quat turned(Quat dq, Vec3 L, Vec3 w, float time) const {
+    // `inverse`: of its inertia where it is turned by dq.
+    Quat turned(Quat dq, Vec3 L, Vec3 w, const SymMat3& inverse, float time) const {
         return to_quat(turn_at_constant_L<1>(dq, orientation({}), L, lanes(block->inverse_inertia), w,
-                                             block->anisotropy[at], time));
+                                             block->anisotropy[at], inverse, time));
     }
     // What the relax pass changed goes into L by the inertia that it saw, before the body turns.
     Vec3 unsettled() const {
         const Vec3 dw = load(state->w) - lanes(block->w_ref);
+        if (is_round()) return block->inertia[0][at] * dw;
         const Quat q = orientation(now.dq);
         return rotate(q, multiply(lanes(block->inertia), rotate_inverse(q, dw)));
     }
@@ -87,7 +91,7 @@ struct Side {
         if (time > 0.0f) {
             m.v = now.v + time * acceleration();
             if (turns()) {
-                m.dq = turned(now.dq, m.L, now.w, time);
+                m.dq = turned(now.dq, m.L, now.w, now.inverse_inertia, time);
                 m.core = rotate(m.dq, core0);
             }
         }
@@ -123,7 +127,7 @@ struct Side {
         SymMat3 inverse = m.inverse_inertia;
         if (time > 0.0f) {
             const Vec3 L = m.L + dL;
-            const Quat d = turned(m.dq, -L, -(inverse * L), time);
+            const Quat d = turned(m.dq, -L, -(inverse * L), inverse, time);
             state->dq[0] = d.x, state->dq[1] = d.y, state->dq[2] = d.z, state->dq[3] = d.w;
             inverse = inverse_inertia_at(d);
         }

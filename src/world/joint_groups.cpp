@@ -3,34 +3,39 @@
 //
 // A joint under the weight of `carried` gives way by (leak / bias) g h^2 carried (1 / m_A + 1 / m_B), see
 // docs/solver.md. In a tree what it carries is the mass of all bodies beyond it, seen from the body that hangs on
-// something fixed, or from the heaviest one. Closed loops have no such order, and errors of their joints add up; small
-// ones are mechanisms, which are to follow their laws.
+// something fixed, or from the heaviest one. Short closed loops are mechanisms, which are to follow their laws: errors of
+// their joints add up. Long ones, as bridges, hang like trees that are cut where ways from what is fixed meet.
 #include "world/world_data.h"
 
 namespace lendulet {
 namespace {
 
 constexpr int most_joints = 256;      // of a group: direct cost of more substeps, in proportion to joints
-constexpr int most_loop_joints = 32;  // of a group with closed loops
+constexpr int most_loop_joints = 32;  // of a mechanism
+constexpr int short_loop = 8;         // joints a loop on average, of a mechanism
 constexpr float slack_load = 12.0f;   // carried mass over the reduced mass of two bodies; 0.3 mm at 8 substeps of 60 Hz
 constexpr uint8_t loop_class = 2;     // four times the setting's substeps
+constexpr float taut = 4.0f;          // what holds a long loop is no weight but the tension of a flat catenary
 
 struct GroupCount {
     int inner = 0, anchors = 0;  // joints between two bodies of the group, and to others
-    uint32_t root = 0;           // the body that hangs on something, else the heaviest
+    uint32_t heaviest = 0;
 };
 
 bool dynamic(const WorldData& world, uint32_t slot) { return world.bodies.info[slot].type == BodyType::dynamic; }
 
 uint32_t other_body(const JointInfo& j, uint32_t slot) { return j.body_a == slot ? j.body_b : j.body_a; }
 
-// Appends all bodies that joints connect with `root`, nearest first, each with the place of the one before it.
-void collect(WorldData& world, uint32_t root, uint32_t mark) {
+void begin_list(WorldData& world, uint32_t root, uint32_t mark) {
+    world.jointed_bodies.push_back({root, -1});
+    world.jointed_seen[root] = mark;
+}
+
+// Appends all bodies that joints connect with those of the list from `first` on, nearest first, each with the place of
+// the one before it.
+void collect(WorldData& world, size_t first, uint32_t mark) {
     Array<JointedBody>& list = world.jointed_bodies;
     Array<uint32_t>& seen = world.jointed_seen;
-    const size_t first = list.size();
-    list.push_back({root, -1});
-    seen[root] = mark;
     for (size_t i = first; i < list.size(); ++i) {
         const uint32_t slot = list[i].slot;
         world.joints.for_each_of(slot, [&](uint32_t joint) {
@@ -42,24 +47,44 @@ void collect(WorldData& world, uint32_t root, uint32_t mark) {
     }
 }
 
+bool is_anchor(const WorldData& world, uint32_t joint, uint32_t slot) {
+    return !dynamic(world, other_body(world.joints.info[joint], slot));
+}
+
 GroupCount count(const WorldData& world, size_t first) {
     GroupCount c;
     const Array<JointedBody>& list = world.jointed_bodies;
-    c.root = list[first].slot;
+    c.heaviest = list[first].slot;
     for (size_t i = first; i < list.size(); ++i) {
         const uint32_t slot = list[i].slot;
-        bool lighter = world.bodies.mass[slot].inverse_mass < world.bodies.mass[c.root].inverse_mass;
-        if (c.anchors == 0 && lighter) c.root = slot;
+        if (world.bodies.mass[slot].inverse_mass < world.bodies.mass[c.heaviest].inverse_mass) c.heaviest = slot;
         world.joints.for_each_of(slot, [&](uint32_t joint) {
-            if (dynamic(world, other_body(world.joints.info[joint], slot))) ++c.inner;
-            else ++c.anchors, c.root = slot;
+            if (is_anchor(world, joint, slot)) ++c.anchors;
+            else ++c.inner;
         });
     }
     c.inner /= 2;  // seen from both bodies
     return c;
 }
 
-// Greatest load of the joints of a tree, per size of the bodies. `carried` is room for as many numbers as bodies.
+// Makes the list of a group anew from the bodies that hang on something fixed, or from the heaviest.
+void list_from_roots(WorldData& world, size_t first, const GroupCount& c, uint32_t mark) {
+    Array<JointedBody>& list = world.jointed_bodies;
+    Array<uint32_t>& roots = world.jointed_roots;
+    roots.clear();
+    for (size_t i = first; i < list.size(); ++i) {
+        bool hangs = false;
+        world.joints.for_each_of(list[i].slot,
+                                 [&](uint32_t joint) { hangs = hangs || is_anchor(world, joint, list[i].slot); });
+        if (hangs) roots.push_back(list[i].slot);
+    }
+    if (roots.empty()) roots.push_back(c.heaviest);
+    list.resize_unset(first);
+    for (uint32_t root : roots) begin_list(world, root, mark);
+    collect(world, first, mark);
+}
+
+// Greatest load of the joints of such a list, per size of the bodies.
 void measure(WorldData& world, JointGroupLoad& g, bool anchored) {
     const JointedBody* list = world.jointed_bodies.data() + g.first;
     Array<float>& carried = world.jointed_mass;
@@ -93,16 +118,18 @@ void find_joint_groups(WorldData& world) {
         uint32_t any = dynamic(world, j.body_a) ? j.body_a : j.body_b;
         if (world.jointed_seen[any] != 0) continue;
         const size_t first = world.jointed_bodies.size();
-        collect(world, any, ++mark);
+        begin_list(world, any, ++mark);
+        collect(world, first, mark);
         GroupCount c = count(world, first);
         JointGroupLoad g{static_cast<int>(first), world.jointed_bodies.count() - static_cast<int>(first),
                          c.inner + c.anchors, 0.0f, 0};
-        if (c.inner >= g.count || c.anchors > 1) {
-            if (g.joints <= most_loop_joints) g.least = loop_class;
+        const int loops = g.joints - g.count + (c.anchors == 0 ? 1 : 0);
+        if (loops > 0 && g.joints <= most_loop_joints && g.joints <= short_loop * loops) {
+            g.least = loop_class;
         } else if (g.joints <= most_joints) {
-            world.jointed_bodies.resize_unset(first);
-            collect(world, c.root, ++mark);
+            list_from_roots(world, first, c, ++mark);
             measure(world, g, c.anchors > 0);
+            if (loops > 0) g.sinking *= taut;
         }
         if (g.least > 0 || g.sinking > 0.0f) world.joint_groups.push_back(g);
         else world.jointed_bodies.resize_unset(first);

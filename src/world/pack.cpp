@@ -225,7 +225,7 @@ void pack_contacts(WorldData& world) {
     world.tasks.for_each(ends.count(), contacts_per_task, [&](int begin, int end, int) {
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
             const TouchingBodies& t = world.active_bodies[i];
-            ends[i] = {place_of(t.a), place_of(t.b), t.kind, t.fixed_a, t.bounces};
+            ends[i] = {place_of(t.a), place_of(t.b), t.kind, t.fixed_a, t.bounces, t.impulse == 0.0f};
         }
     });
     sort_by_class(world);

@@ -23,6 +23,7 @@ constexpr float buckling_reserve = 1.7f;  // above the load at which a column of
 constexpr float resting_speed = 0.5f;     // m/s; what moves faster is no load but an impact
 constexpr float kept_reserve = 1.6f;  // a class is left only when fewer substeps would carry this many times the load
 constexpr int patience = 60;          // ... for so many steps: a column that has just stiffened springs up a little
+constexpr int unloaded_patience = 15;  // ... and for so many where nothing that is slow carries anything
 // Steps for which a load must be felt before an island takes more substeps for it: what lands on bodies that lie still
 // presses them for a step or two, and so does what rocks. Of 200 bodies that jump about, two thirds took two or four
 // times the substeps with 1, half of them with 2, none with 3.
@@ -63,7 +64,7 @@ void begin_entry(WorldData& world, uint32_t slot) {
              : !slow             ? uint8_t{0}
              : calm < calm_steps ? static_cast<uint8_t>(calm + 1)
                                  : calm;
-    l.slow = l.calm >= calm_steps;
+    l.slow = l.rests = l.calm >= calm_steps;
     l.inverse_mass = bodies.mass[slot].inverse_mass;
     l.radius = bodies.info[slot].radius;
     l.carried = bodies.mass[slot].mass * bodies.info[slot].gravity_factor;
@@ -104,6 +105,7 @@ uint32_t join(WorldData& world, uint32_t a, uint32_t b) {
     x.waited = x.waited < y.waited ? x.waited : y.waited;
     x.pressed = x.pressed > y.pressed ? x.pressed : y.pressed;
     x.tied |= y.tied;
+    x.rests |= y.rests;
     return a;
 }
 
@@ -155,7 +157,7 @@ void decide(IslandLoad& l, float gravity, float dt, int substeps) {
     if (l.tied) return;
     int c = l.least;
     if (gravity > 0.0f) {
-        int kept = l.before;
+        int kept = l.rests ? l.before : 0;  // where all bodies are fast nothing stands any more
         const Load known{l.sinking, l.buckling}, felt{l.felt_sinking, l.felt_buckling};
         const Load all{maximum(known.sinking, felt.sinking), maximum(known.buckling, felt.buckling)};
         c = larger(c, class_for(l, known, gravity, dt, substeps, 1.0f));
@@ -164,7 +166,7 @@ void decide(IslandLoad& l, float gravity, float dt, int substeps) {
         if (l.pressed >= lasting_load) c = asked, l.pressed = 0;
         bool bearable = kept > 0 && class_for(l, all, gravity, dt, substeps, kept_reserve) < kept;
         l.waited = bearable ? static_cast<uint8_t>(l.waited + 1) : uint8_t{0};
-        if (l.waited >= patience) --kept, l.waited = 0;
+        if (l.waited >= (all.sinking > 0.0f ? patience : unloaded_patience)) --kept, l.waited = 0;
         c = larger(c, kept);
     }
     while (c > 0 && (l.contacts << c) > most_contacts) --c;

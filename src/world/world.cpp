@@ -102,6 +102,7 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       jointed_bodies(&memory),
       jointed_seen(&memory),
       jointed_mass(&memory),
+      jointed_roots(&memory),
       awake(&memory),
       solver_bodies(&memory),
       island_loads(&memory),

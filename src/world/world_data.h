@@ -54,6 +54,7 @@ struct alignas(64) IslandLoad {
     uint8_t substeps = 0;                             // class
     bool meets_moving = false;                        // has a contact with another dynamic body
     bool tied = false;  // to other joints or a kinematic body in motion: takes the setting's substeps
+    bool rests = false;  // one of its bodies is slow
     bool decided = false;
     // Of the body itself.
     bool in_group = false;  // in one of WorldData::joint_groups
@@ -180,6 +181,7 @@ struct WorldData {
     Array<JointedBody> jointed_bodies;
     Array<uint32_t> jointed_seen;  // room to find them, by body slot
     Array<float> jointed_mass;
+    Array<uint32_t> jointed_roots;
     bool joint_groups_changed = true;  // a joint came or went
 
     // This step's awake bodies, packed for the solver.
