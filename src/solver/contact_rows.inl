@@ -303,13 +303,13 @@ struct RowPlace {
     }
 };
 
-// Whether a body may turn about its own centre and masses stay: it cannot be moved, or it is a ball that touches with its
-// surface. `arm`: of the contact.
+// Whether a body may turn about its centre and a contact's masses stay: it cannot be moved, or it is a ball about it,
+// `radius` that of the surface at the end of `arm`.
 template <class F>
 LENDULET_FORCE_INLINE F turns_freely(const SymMat3T<F>& I, Vec3T<F> arm, Vec3T<F> n, F radius) {
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
-    const Vec3T<F> core = arm - radius * n;
-    F is = select(dot(core, core) <= splat<F>(0.05f) * (radius * radius), one, zero);
+    const Vec3T<F> aside = arm - dot(arm, n) * n;
+    F is = select(dot(aside, aside) <= splat<F>(0.01f) * (radius * radius), one, zero);
     is = select(maximum(absolute(I.xx - I.yy), absolute(I.xx - I.zz)) > zero, zero, is);
     is = select(maximum(maximum(absolute(I.xy), absolute(I.xz)), absolute(I.yz)) > zero, zero, is);
     return select(I.xx > zero, is, one);
@@ -367,7 +367,7 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     SymMat3T<F> IB = load_inverse_inertia_at<W>(bodies.inertia.data(), c.b);
     F inverse_masses = A.inverse_mass + B.inverse_mass;
     if constexpr (P == 1) {
-        const F free = minimum(turns_freely(IA, c.ra, c.n, c.radius_a), turns_freely(IB, c.rb, -c.n, c.radius_b));
+        const F free = minimum(turns_freely(IA, c.ra, c.n, c.radius_a), turns_freely(IB, c.rb, c.n, c.radius_b));
         c.turn_limit = select(free > zero, splat<F>(never) + select(balls > zero, zero, splat<F>(1.0f)), c.turn_limit);
     }
     prepare_normals<W, P>(c, c.ra, c.rb, IA, IB, inverse_masses);

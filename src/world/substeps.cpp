@@ -23,7 +23,7 @@ constexpr float buckling_reserve = 1.7f;  // above the load at which a column of
 constexpr float resting_speed = 0.5f;     // m/s; what moves faster is no load but an impact
 constexpr float kept_reserve = 1.6f;  // a class is left only when fewer substeps would carry this many times the load
 constexpr int patience = 60;          // ... for so many steps: a column that has just stiffened springs up a little
-constexpr int unloaded_patience = 15;  // ... and for so many where nothing that is slow carries anything
+constexpr int falling_patience = 12;  // ... and for so many where all bodies are fast, or none carries anything
 // Steps for which a load must be felt before an island takes more substeps for it: what lands on bodies that lie still
 // presses them for a step or two, and so does what rocks. Of 200 bodies that jump about, two thirds took two or four
 // times the substeps with 1, half of them with 2, none with 3.
@@ -157,7 +157,7 @@ void decide(IslandLoad& l, float gravity, float dt, int substeps) {
     if (l.tied) return;
     int c = l.least;
     if (gravity > 0.0f) {
-        int kept = l.rests ? l.before : 0;  // where all bodies are fast nothing stands any more
+        int kept = l.before;
         const Load known{l.sinking, l.buckling}, felt{l.felt_sinking, l.felt_buckling};
         const Load all{maximum(known.sinking, felt.sinking), maximum(known.buckling, felt.buckling)};
         c = larger(c, class_for(l, known, gravity, dt, substeps, 1.0f));
@@ -166,7 +166,8 @@ void decide(IslandLoad& l, float gravity, float dt, int substeps) {
         if (l.pressed >= lasting_load) c = asked, l.pressed = 0;
         bool bearable = kept > 0 && class_for(l, all, gravity, dt, substeps, kept_reserve) < kept;
         l.waited = bearable ? static_cast<uint8_t>(l.waited + 1) : uint8_t{0};
-        if (l.waited >= (all.sinking > 0.0f ? patience : unloaded_patience)) --kept, l.waited = 0;
+        const bool stands = l.rests && all.sinking > 0.0f;
+        if (l.waited >= (stands ? patience : falling_patience)) --kept, l.waited = 0;
         c = larger(c, kept);
     }
     while (c > 0 && (l.contacts << c) > most_contacts) --c;
