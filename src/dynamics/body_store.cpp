@@ -1,6 +1,14 @@
 #include "dynamics/body_store.h"
 
+#include "math/turned.h"
+
 namespace lendulet {
+
+bool BodyMass::symmetric() const {
+    const Vec3 i = inverse_inertia;
+    const float near = equal_moments * max_component(i);
+    return absolute(i.x - i.y) <= near || absolute(i.y - i.z) <= near || absolute(i.z - i.x) <= near;
+}
 
 uint32_t BodyStore::add() {
     uint32_t slot = slots.add();

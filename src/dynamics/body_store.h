@@ -31,6 +31,8 @@ struct BodyMass {
     float anisotropy = 1.0f;        // largest over smallest principal moment
     // All moments are equal, as those of balls and cubes: the first one tells all, in any axes.
     bool round() const { return anisotropy <= 1.0f; }
+    // Two are, or nearly: it turns by a closed form.
+    bool symmetric() const;
 };
 
 struct BodyForces {

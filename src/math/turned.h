@@ -5,6 +5,9 @@
 
 namespace lendulet {
 
+// Principal moments that differ by no more, relative to the largest, count as equal: rounding of mass properties.
+inline constexpr float equal_moments = 1e-6f;
+
 // R(dq)^T n - n.
 template <class F>
 LENDULET_FORCE_INLINE Vec3T<F> turned_back(QuatT<F> dq, Vec3T<F> n) {

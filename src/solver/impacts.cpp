@@ -1,6 +1,7 @@
 #include "solver/impacts.h"
 
 #include "lendulet/math.h"
+#include "math/turned.h"
 #include "math/wide/mask.h"
 #include "math/wide/wide.h"
 

@@ -172,6 +172,18 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
     });
 }
 
+void Solver::coast(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, BodyRange range) const {
+    if (range.begin >= range.end) return;
+    SubstepConstants k = substep_constants({settings.dt, 1, settings.gravity});
+    k.first = k.last = true;
+    for_each_body_block(tasks, range, [&](int begin, int end) {
+        kernels_.begin_step(bodies, begin, end);
+        kernels_.kick(bodies, k, begin, end);
+        kernels_.drift(bodies, k, begin, end);
+        kernels_.settle(bodies, begin, end);
+    });
+}
+
 void Solver::store(TaskPool& tasks, ContactRecord* records) {
     for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
         kernels.store(g, records, begin, end);

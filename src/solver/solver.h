@@ -73,6 +73,8 @@ public:
     void solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records) {
         solve(tasks, settings, bodies, records, {0, bodies.count});
     }
+    // Bodies of the range, of which no contact and no joint knows, take all of settings.dt at once.
+    void coast(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, BodyRange range) const;
     // Writes impulses and final separations back.
     void store(TaskPool& tasks, ContactRecord* records);
     // Writes impulses back into the joints given to prepare_joints().

@@ -36,8 +36,6 @@ LENDULET_FORCE_INLINE QuatT<F> normalized(QuatT<F> q) {
     return {s * q.x, s * q.y, s * q.z, s * q.w};
 }
 
-// Principal moments that differ by no more, relative to the largest, count as equal: rounding of mass properties.
-inline constexpr float equal_moments = 1e-6f;
 inline constexpr int most_halvings = 7;  // of a turn, until the series holds: 128 radians in a substep
 
 // The turn, or what is left of it at a radian, where the series ends: what spins faster than its parts can follow turns
@@ -156,6 +154,11 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
         F most = maximum(maximum(inverse.x, inverse.y), inverse.z);
         F steady = splat<F>(2.0f * h) * select(given, square_root(dot(w, w)) * anisotropy, square_root(dot(L, L)) * most);
         steady = select(symmetric > zero, zero, steady);
+        const QuatT<F> d = multiply(long_turn_less_one(splat<F>(h) * (I * L)), dq);
+        auto evenly = select(anisotropy > one, zero, select(given, zero, one)) > zero;  // about its axis, however far
+        turned = select(evenly, QuatT<F>{dq.x + d.x, dq.y + d.y, dq.z + d.z, dq.w + d.w}, turned);
+        symmetric = select(evenly, one, symmetric);
+        steady = select(evenly, zero, steady);
         iterations = select(steady > splat<F>(quick), select(anisotropy > one, splat<F>(6.0f), zero), iterations);
         for (int i = 1; i < max_turn_parts; i *= 2)
             parts = select(steady > splat<F>(most_wish) * parts, parts + parts, parts);

@@ -3,6 +3,7 @@
 
 #include "geometry/mass.h"
 #include "geometry/triangle_surface.h"
+#include "math/turned.h"
 #include "world/validate.h"
 #include "world/world_data.h"
 
@@ -155,7 +156,7 @@ Status set_mass(BodyStore& bodies, uint32_t slot, const MassProperties& m, Princ
     mass.inertia = principal.inertia;
     mass.inverse_inertia = {1.0f / principal.inertia.x, 1.0f / principal.inertia.y, 1.0f / principal.inertia.z};
     float most = max_component(mass.inertia), least = min_component(mass.inertia);
-    mass.anisotropy = most - least <= 1e-6f * most ? 1.0f : most / least;
+    mass.anisotropy = most - least <= equal_moments * most ? 1.0f : most / least;
     bodies.principal[slot] = {m.centre, principal.rotation};
     return {};
 }

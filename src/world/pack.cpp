@@ -16,9 +16,10 @@ constexpr int bodies_per_task = 256, contacts_per_task = 512;
 void put(float* p, Vec3 v) { p[0] = v.x, p[1] = v.y, p[2] = v.z; }
 Vec3 get(const float* p) { return {p[0], p[1], p[2]}; }
 
-// How many substeps of its own a body takes in one of the setting: 1, 2, 4, 8. What is kept from step to step, impulses
-// and changes, is in units of the setting's substep.
+// How many substeps of its own a body takes in one of the setting: 1, 2, 4, 8, or less than one. What is kept from step
+// to step, impulses and changes, is in units of the setting's substep.
 float multiple(const WorldData& world, int32_t solver_body) {
+    if (solver_body >= world.alone.begin) return 1.0f / static_cast<float>(world.config.solver_steps);
     int c = 0;
     while (solver_body >= world.parts[c].bodies.end) ++c;
     return static_cast<float>(1 << c);

@@ -4,10 +4,11 @@
 
 namespace lendulet {
 
-void place_bodies(WorldData& world) {
+void place_bodies(WorldData& world, float dt) {
+    constexpr int classes = substep_classes + 1;
     BodyStore& bodies = world.bodies;
     // Each class begins a tile of its own.
-    int counts[substep_classes] = {};
+    int counts[classes] = {};
     world.has_packed_kinematic = false;
     for (uint32_t slot : world.movers.bodies) {
         BodyInfo& info = bodies.info[slot];
@@ -17,18 +18,19 @@ void place_bodies(WorldData& world) {
                                 ? !info.asleep
                                 : info.type == BodyType::kinematic && length_squared(m.p) + length_squared(m.L) > 0.0f;
         world.has_packed_kinematic |= packed && !dynamic;
-        info.solver_index = packed ? -1 - substep_class(world, slot) : static_body;
+        info.solver_index = packed ? -1 - substep_class(world, slot, dt) : static_body;
         if (packed) ++counts[-1 - info.solver_index];
     }
-    int firsts[substep_classes], place = reserved_bodies, awake = 0;
-    for (int c = 0; c < substep_classes; ++c) {
+    int firsts[classes], place = reserved_bodies, awake = 0;
+    auto range_of = [&](int c) -> BodyRange& { return c == alone_class ? world.alone : world.parts[c].bodies; };
+    for (int c = 0; c < classes; ++c) {
         const TilePlaces places(place, counts[c]);
-        world.parts[c].bodies = {place, places.end()};
+        range_of(c) = {place, places.end()};
         place = places.end();
         firsts[c] = awake;
         awake += counts[c];
     }
-    world.hard_bodies = awake - counts[0];
+    world.hard_bodies = awake - counts[0] - counts[alone_class];
     world.solver_bodies.reset(place - reserved_bodies);
     world.awake.resize_unset(static_cast<size_t>(awake));
     for (uint32_t slot : world.movers.bodies) {
@@ -36,8 +38,8 @@ void place_bodies(WorldData& world) {
         if (index < 0) world.awake[static_cast<size_t>(firsts[-1 - index]++)] = slot;
     }
     const uint32_t* next = world.awake.data();
-    for (int c = 0; c < substep_classes; ++c) {
-        TilePlaces places(world.parts[c].bodies.begin, counts[c]);
+    for (int c = 0; c < classes; ++c) {
+        TilePlaces places(range_of(c).begin, counts[c]);
         for (int i = 0; i < counts[c]; ++i) bodies.info[*next++].solver_index = places.take();
         places.for_each_empty([&](int i) { world.solver_bodies.set_at_rest(i); });
     }

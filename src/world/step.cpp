@@ -77,7 +77,7 @@ void step(WorldData& world, float dt, bool last) {
     clock.lap(Stage::islands);
     find_joint_groups(world);
     choose_substeps(world, dt);
-    place_bodies(world);
+    place_bodies(world, dt);
     pack_contacts(world);
     pack_bodies(world, dt);
     limit_recovery(world, dt);
@@ -89,6 +89,7 @@ void step(WorldData& world, float dt, bool last) {
         s.substeps <<= c;
         world.solvers[c].solve(world.tasks, s, world.solver_bodies, world.records.data(), world.parts[c].bodies);
     }
+    world.solvers[0].coast(world.tasks, settings, world.solver_bodies, world.alone);
     clock.lap(Stage::solve);
     for (Solver& solver : world.solvers) {
         solver.store(world.tasks, world.records.data());

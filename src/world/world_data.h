@@ -192,6 +192,7 @@ struct WorldData {
     Array<uint32_t> loaded;          // slots of those of this step: bodies in contact and those of joint groups
     Array<FirstLoad> first_loads;    // of this step
     SolverPart parts[substep_classes];
+    BodyRange alone{0, 0};  // bodies behind them that nothing acts on but gravity: they take the step at once
     int hard_bodies = 0;                // of classes above the setting's
     bool has_packed_kinematic = false;  // some packed bodies are moved by hand
     ScheduleRoom schedule_room;
@@ -237,7 +238,7 @@ void offer_first_load(WorldData& world, uint32_t record, const TouchingBodies& b
 // Sets the impulses of what was offered; `weight`: what a substep of gravity gives to 1 kg, N s.
 void guess_first_loads(WorldData& world, float weight);
 // Gives every awake body its place in the solver's arrays; after choose_substeps().
-void place_bodies(WorldData& world);
+void place_bodies(WorldData& world, float dt);
 // How the contacts of each class are divided; these are sorted and know their places.
 void cut_contacts(WorldData& world);
 void pack_contacts(WorldData& world);
@@ -253,8 +254,10 @@ void unpack_bodies(WorldData& world, float dt, bool forces_end);
 void stop_at_impacts(WorldData& world, float dt);
 void finish_step(WorldData& world, float dt);
 
-// 0 .. substep_classes - 1, for a body that is about to be packed; after choose_substeps().
-int substep_class(WorldData& world, uint32_t slot);
+// Class of the bodies of WorldData::alone.
+inline constexpr int alone_class = substep_classes;
+// 0 .. substep_classes - 1 or alone_class, for a body that is about to be packed; after choose_substeps().
+int substep_class(WorldData& world, uint32_t slot, float dt);
 
 // Mixes all warm-start impulses of joints into a hash, in creation order.
 uint64_t hash_joints(const WorldData& world, uint64_t start);
