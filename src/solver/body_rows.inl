@@ -41,7 +41,8 @@ struct BlockLanes {
     }
 };
 
-// Theta w for bodies turned by dq since the start of the step. Where all moments are equal that asks for no orientation.
+// Theta w for bodies turned by dq since the start of the step. Where all moments are equal that asks for no
+// orientation.
 template <int W>
 LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> apply_moments(QuatT<Wide<float, W>> dq, const BlockLanes<W>& body,
                                                           Vec3T<Wide<float, W>> w) {

@@ -112,16 +112,15 @@ inline constexpr float calm = 0.01f, lively = 0.05f, quick = 0.2f;
 // Turns dq q0 over h at constant L; I is the inverse inertia there. The fixed point of the midpoint rule contracts by
 // h |w| anisotropy / 2 an iteration, a quarter of the wish below. The iteration begins with what w would be in the
 // middle if it went on to change as it does, dw/dt = I (L x w), as good as one that begins with w and goes once. Fast
-// and slender bodies are turned in parts and with more iterations, and slow ones need fewer than three: as many as leave
-// an error below 1e-7 rad. How many parts must not change with |w| as
-// a body tumbles: the rule keeps energy because it is the same backwards, and with parts that came and went a box at
-// 100 rad/s about its middle axis gained 3 % of it in a minute. Kinematic lanes (no inertia) turn with their given w.
-// The middle's inertia is given the mean of L as the body sees it at both ends (as it sees L from the middle, with its
-// part across the axis times the cosine of half the turn): then the axis n satisfies (n x L) I^-1 mean = 0, which is
-// what the energies at both ends differ by, so that every turn keeps it, however far it goes.
-// What a lane does never depends on its neighbours; only work that no lane of a block asks for is left out.
-// A turn of many parts is rounded once: at 1000 rad/s about the middle axis the parts' rounding took 0.02 % of the
-// energy a minute.
+// and slender bodies are turned in parts and with more iterations, and slow ones need fewer than three: as many as
+// leave an error below 1e-7 rad. How many parts must not change with |w| as a body tumbles: the rule keeps energy
+// because it is the same backwards, and with parts that came and went a box at 100 rad/s about its middle axis gained 3
+// % of it in a minute. Kinematic lanes (no inertia) turn with their given w. The middle's inertia is given the mean of
+// L as the body sees it at both ends (as it sees L from the middle, with its part across the axis times the cosine of
+// half the turn): then the axis n satisfies (n x L) I^-1 mean = 0, which is what the energies at both ends differ by,
+// so that every turn keeps it, however far it goes. What a lane does never depends on its neighbours; only work that no
+// lane of a block asks for is left out. A turn of many parts is rounded once: at 1000 rad/s about the middle axis the
+// parts' rounding took 0.02 % of the energy a minute.
 template <int W>
 LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float, W>> dq, QuatT<Wide<float, W>> q0,
                                                                Vec3T<Wide<float, W>> L, Vec3T<Wide<float, W>> inverse,
@@ -131,8 +130,8 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
     const F one = splat<F>(1.0f), zero = splat<F>(0.0f), two = splat<F>(2.0f);
     auto given = (inverse.x + inverse.y + inverse.z) <= zero;
     F wish2 = splat<F>(4.0f * h * h) * dot(w, w) * (anisotropy * anisotropy);  // squared
-    F iterations = select(wish2 > splat<F>(calm * calm),
-                          select(wish2 > splat<F>(lively * lively), splat<F>(3.0f), one), zero);
+    F iterations =
+        select(wish2 > splat<F>(calm * calm), select(wish2 > splat<F>(lively * lively), splat<F>(3.0f), one), zero);
     iterations = select(anisotropy <= one, zero, iterations);  // about a fixed axis L gives the velocity at once
     F symmetric = zero;
     QuatT<F> turned{};
@@ -152,7 +151,8 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
     if (some_quick) {
         // |L| and the least moment do not change while it tumbles, |w| does.
         F most = maximum(maximum(inverse.x, inverse.y), inverse.z);
-        F steady = splat<F>(2.0f * h) * select(given, square_root(dot(w, w)) * anisotropy, square_root(dot(L, L)) * most);
+        F steady =
+            splat<F>(2.0f * h) * select(given, square_root(dot(w, w)) * anisotropy, square_root(dot(L, L)) * most);
         steady = select(symmetric > zero, zero, steady);
         const QuatT<F> d = multiply(long_turn_less_one(splat<F>(h) * (I * L)), dq);
         auto evenly = select(anisotropy > one, zero, select(given, zero, one)) > zero;  // about its axis, however far

@@ -3,8 +3,8 @@
 //
 // A joint under the weight of `carried` gives way by (leak / bias) g h^2 carried (1 / m_A + 1 / m_B), see
 // docs/solver.md. In a tree what it carries is the mass of all bodies beyond it, seen from the body that hangs on
-// something fixed, or from the heaviest one. Short closed loops are mechanisms, which are to follow their laws: errors of
-// their joints add up. Long ones, as bridges, hang like trees that are cut where ways from what is fixed meet.
+// something fixed, or from the heaviest one. Short closed loops are mechanisms, which are to follow their laws: errors
+// of their joints add up. Long ones, as bridges, hang like trees that are cut where ways from what is fixed meet.
 #include "world/world_data.h"
 
 namespace lendulet {

@@ -44,6 +44,11 @@ Vec3 torque(const WorldData& world, uint32_t slot, float dt) {
 bool cap_speed(BodyStore& bodies, uint32_t slot) {
     BodyMomenta& m = bodies.momenta[slot];
     const BodyMass& mass = bodies.mass[slot];
+    // Nearly all are slow, and neither square overflows unless they are not.
+    const float inverse = mass.inverse_mass, turning = max_component(mass.inverse_inertia);
+    if (inverse * inverse * length_squared(m.p) <= max_speed * max_speed &&
+        turning * turning * length_squared(m.L) <= max_angular_speed * max_angular_speed)
+        return false;
     bool capped = false;
     float size = max_component(absolute(m.p));
     if (1.8f * size * mass.inverse_mass > max_speed) {

@@ -227,15 +227,14 @@ void survey_contacts(WorldData& world) {
     });
 }
 
-// Whether the body can take a step as a whole, exactly: it falls, and turns about one axis or has a closed form of its
-// turn (see turn.inl), or does not turn to speak of.
+// Whether the body can take a step as a whole, exactly: it falls without drag, and turns about one axis or by a closed
+// form (see turn.inl), or does not turn to speak of.
 bool goes_alone(const WorldData& world, uint32_t slot, float dt) {
-    constexpr float least_loss = 2e-3f;  // of velocity by damping in a step: from here on the mean is not the middle
-    constexpr float still = 1e-3f;       // rad in a step, times the anisotropy
+    constexpr float still = 1e-3f;  // rad in a step, times the anisotropy
     const BodyInfo& info = world.bodies.info[slot];
     const BodyMass& mass = world.bodies.mass[slot];
     if (info.type != BodyType::dynamic || info.has_forces || world.joints.first_of(slot) != no_joint_link) return false;
-    if (dt * (info.linear_damping + info.angular_damping) > least_loss) return false;
+    if (info.linear_damping > 0.0f || info.angular_damping > 0.0f) return false;
     return mass.round() || mass.symmetric() ||
            dt * length(world.bodies.angular_velocity(slot)) * mass.anisotropy < still;
 }
@@ -287,7 +286,8 @@ void choose_substeps(WorldData& world, float dt) {
 }
 
 int substep_class(WorldData& world, uint32_t slot, float dt) {
-    if (slot >= world.island_loads.size() || !has_entry(world, slot)) return goes_alone(world, slot, dt) ? alone_class : 0;
+    if (slot >= world.island_loads.size() || !has_entry(world, slot))
+        return goes_alone(world, slot, dt) ? alone_class : 0;
     IslandLoad& l = world.island_loads[slot];
     const IslandLoad& island = world.island_loads[root(world.load_parent, slot)];
     l.substeps = island.substeps;

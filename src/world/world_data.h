@@ -53,7 +53,7 @@ struct alignas(64) IslandLoad {
     uint8_t pressed = 0;                              // steps since when it feels loads that take more
     uint8_t substeps = 0;                             // class
     bool meets_moving = false;                        // has a contact with another dynamic body
-    bool tied = false;  // to other joints or a kinematic body in motion: takes the setting's substeps
+    bool tied = false;   // to other joints or a kinematic body in motion: takes the setting's substeps
     bool rests = false;  // one of its bodies is slow
     bool decided = false;
     // Of the body itself.
@@ -193,7 +193,7 @@ struct WorldData {
     Array<FirstLoad> first_loads;    // of this step
     SolverPart parts[substep_classes];
     BodyRange alone{0, 0};  // bodies behind them that nothing acts on but gravity: they take the step at once
-    int hard_bodies = 0;                // of classes above the setting's
+    int hard_bodies = 0;    // of classes above the setting's
     bool has_packed_kinematic = false;  // some packed bodies are moved by hand
     ScheduleRoom schedule_room;
     size_t expected = 0;          // colliders for whose contacts there is room, see expect_contacts()
