@@ -7,7 +7,9 @@
 
 #include <cstdint>
 
-#if defined(_MSC_VER) && !defined(__clang__)
+#if defined(LENDULET_FORCE_INLINE)
+// Set by who builds for one instruction set alone and wants small code.
+#elif defined(_MSC_VER) && !defined(__clang__)
 #define LENDULET_FORCE_INLINE __forceinline
 #else
 // Forced: units compiled for different instruction sets include these functions, and an out-of-line copy from one unit

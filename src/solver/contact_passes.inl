@@ -217,11 +217,6 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
         if (k.moved) follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
         sweep_normals<W, P, true>(c, A, B, t2, k, change);
         if (changes_nothing<W, P>(change, c.overdue)) return;
-    } else if (pass == Pass::relax && empty) {
-        c.overdue = zero_vector<F>();
-        now = follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
-        sweep_normals<W, P, false>(c, A, B, t2, k, change);
-        if (changes_nothing<W, P>(change, c.overdue)) return;
     }
     Vec3T<F> drift_a = zero_vector<F>(), drift_b;
     SymMat3T<F> IA{}, IB = load_inverse_inertia_at<W>(bodies.inertia, c.b, B, drift_b);
@@ -239,15 +234,14 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
     } else if constexpr (pass == Pass::solve) {
         apply_normals<W, P, true>(c, A, B, IA, IB, t2, change);
     } else {
-        if (!empty) {
-            if (!fixed_a) {
-                Vec3T<F> drift = drift_b - drift_a, moment = cross(held_impulse<W, P>(c, t2), drift);
-                auto moving = dot(drift, drift) > splat<F>(k.still_drift * k.still_drift);
-                c.overdue = select(moving, moment, zero_vector<F>());
-            }
-            now = follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
-            sweep_normals<W, P, false>(c, A, B, t2, k, change);
+        if (!fixed_a) {
+            Vec3T<F> drift = drift_b - drift_a, moment = cross(held_impulse<W, P>(c, t2), drift);
+            auto moving = dot(drift, drift) > splat<F>(k.still_drift * k.still_drift);
+            c.overdue = select(moving, moment, zero_vector<F>());
         }
+        now = follow_bodies<W, P>(c, bodies, k, g, first, t2, A, B);
+        sweep_normals<W, P, false>(c, A, B, t2, k, change);
+        if (empty && changes_nothing<W, P>(change, c.overdue)) return;
         apply_normals<W, P, false>(c, A, B, IA, IB, t2, change);
         Vec3T<F> slip = (now.start_slip + (B.v - A.v)) + (cross(B.w, now.rb) - cross(A.w, now.ra)), spin{};
         if constexpr (P > 1) spin = c.turn.start_spin + (B.w - A.w);

@@ -73,5 +73,18 @@ TEST(HardIslands, ColumnsAndHeavyOnLightTakeMore) {
     EXPECT_EQ(loaded.statistics().hard_bodies, 2);
 }
 
+// A column that is blown apart is none any more: its boxes do not go on for seconds as if they carried it.
+TEST(HardIslands, WhatFallsApartTakesFewerSoon) {
+    World world = awake_world();
+    add_floor(world, 200.0f);
+    const std::vector<BodyId> column = add_stack(world, 0.0f, 30);
+    run(world, 10);
+    EXPECT_EQ(world.statistics().hard_bodies, 30);
+    for (size_t i = 0; i < column.size(); ++i)
+        world.get(column[i]).set_velocity({i % 2 == 0 ? 9.0f : -9.0f, 5.0f, i % 3 == 0 ? 7.0f : -6.0f}).value();
+    run(world, 60);
+    EXPECT_EQ(world.statistics().hard_bodies, 0);
+}
+
 }  // namespace
 }  // namespace lendulet::test

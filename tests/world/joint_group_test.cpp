@@ -90,6 +90,37 @@ TEST(JointGroups, LoadMayComeOff) {
     EXPECT_LT(most, 4e-3);
 }
 
+// Bridges of any number of planks hang on their weight; a linkage follows its law. `longest`: greatest gap in the last
+// second of four, in parts of a plank.
+TEST(JointGroups, BridgesAreNoMechanisms) {
+    for (int planks : {10, 30, 60}) {
+        World world = WorldBuilder{}.sleep(false).build().value();
+        BodyId before = world.add_static_body({.position = {0.0f, 0.0f, 0.0f}}).value();
+        std::vector<JointId> joints;
+        auto hinge = [&](BodyId body, int i) {
+            const Position at{0.5f * static_cast<float>(i), 0.0f, 0.0f};
+            joints.push_back(
+                world.add_joint(world.joint_at(JointType::hinge, before, body, at, {0.0f, 0.0f, 1.0f}).value()).value());
+            before = body;
+        };
+        for (int i = 0; i < planks; ++i) {
+            RigidBodyDef def{.shape = Box{{0.24f, 0.05f, 0.8f}}};
+            def.position = {0.5f * static_cast<float>(i) + 0.25f, 0.0f, 0.0f};
+            def.filter = {.category = 1, .mask = 0};
+            hinge(world.add_rigid_body(def).value(), i);
+        }
+        hinge(world.add_static_body({.position = {0.5f * static_cast<float>(planks), 0.0f, 0.0f}}).value(), planks);
+        float longest = 0.0f;
+        for (int i = 0; i < 240; ++i) {
+            world.update(dt).value();
+            for (JointId joint : joints)
+                if (i >= 180) longest = std::fmax(longest, length(world.joint(joint).linear_error));
+        }
+        EXPECT_LT(longest, 0.01f) << planks;
+        EXPECT_EQ(world.statistics().hard_bodies, planks > 10 ? planks : 0);
+    }
+}
+
 // The same bits for every width and number of workers, also where groups of several multiples meet contacts.
 TEST(JointGroups, EveryWidthAndWorkerGivesTheSameBits) {
     uint64_t expected = 0;
