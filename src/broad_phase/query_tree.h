@@ -101,7 +101,7 @@ private:
     template <class Keys, class Visit>
     void walk(float limit, Keys&& keys_of, Visit&& visit) const;
 
-    const QueryTreeCasts* casts_ = &query_tree_casts();
+    const QueryTreeCast cast_ = query_tree_cast();
     int count_ = 0, built_count_ = 0;
     int changes_ = 0;  // since its size was last looked at
     bool worn_ = false;
@@ -143,7 +143,7 @@ void QueryTree::cast(const SweptBox& swept, float limit, Visit&& visit) const {
     if (nodes_.empty()) return;
     using Called = std::remove_reference_t<Visit>;
     auto called = [](void* context, uint32_t index) -> float { return (*static_cast<Called*>(context))(index); };
-    casts_->one(nodes_.data(), swept, limit, {called, &visit});
+    cast_(nodes_.data(), swept, limit, {called, &visit});
 }
 
 template <class Visit>

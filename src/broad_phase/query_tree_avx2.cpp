@@ -5,8 +5,10 @@
 
 namespace lendulet {
 
+extern const QueryTreeCast query_tree_cast_avx2;
 extern const QueryTreeCasts query_tree_casts_avx2;
-constexpr QueryTreeCasts query_tree_casts_avx2 = query_tree_avx2::make_query_tree_casts<Wide<float, 8>>();
+constexpr QueryTreeCast query_tree_cast_avx2 = query_tree_avx2::cast_one<Wide<float, 8>>;
+constexpr QueryTreeCasts query_tree_casts_avx2 = query_tree_avx2::cast_many<Wide<float, 8>>;
 
 }  // namespace lendulet
 #endif

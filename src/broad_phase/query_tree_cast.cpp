@@ -6,15 +6,20 @@
 namespace lendulet {
 
 #if defined(__x86_64__)
+extern const QueryTreeCast query_tree_cast_avx2;
 extern const QueryTreeCasts query_tree_casts_avx2;
-#endif
 
-const QueryTreeCasts& query_tree_casts([[maybe_unused]] int width) {
-#if defined(__x86_64__)
-    if ((width == 0 || width >= 8) && cpu_has_avx2()) return query_tree_casts_avx2;
-#endif
-    static constexpr QueryTreeCasts baseline = query_tree_baseline::make_query_tree_casts<Wide<float, 4>>();
-    return baseline;
+QueryTreeCast query_tree_cast(int width) {
+    if ((width == 0 || width >= 8) && cpu_has_avx2()) return query_tree_cast_avx2;
+    return query_tree_baseline::cast_one<Wide<float, 4>>;
 }
+QueryTreeCasts query_tree_casts(int width) {
+    if ((width == 0 || width >= 8) && cpu_has_avx2()) return query_tree_casts_avx2;
+    return query_tree_baseline::cast_many<Wide<float, 4>>;
+}
+#else
+QueryTreeCast query_tree_cast(int) { return query_tree_baseline::cast_one<Wide<float, 4>>; }
+QueryTreeCasts query_tree_casts(int) { return query_tree_baseline::cast_many<Wide<float, 4>>; }
+#endif
 
 }  // namespace lendulet

@@ -52,14 +52,14 @@ struct ManyCasts {
     size_t item_size;
 };
 
-struct QueryTreeCasts {
-    // Visits the boxes below nodes[0] that may be met at t in [0, limit], roughly by t.
-    void (*one)(const QueryNode* nodes, const SweptBox& swept, float limit, CastVisitor visitor);
-    // The same for each of many, by turns.
-    void (*many)(const ManyCasts& casts);
-};
+// Visits the boxes below nodes[0] that may be met at t in [0, limit], roughly by t.
+using QueryTreeCast = void (*)(const QueryNode* nodes, const SweptBox& swept, float limit, CastVisitor visitor);
+// The same for each of many, by turns.
+using QueryTreeCasts = void (*)(const ManyCasts& casts);
 
-// In vectors of 4 or 8 lanes; of 4 where this machine has no instructions for 8. 0: the widest.
-const QueryTreeCasts& query_tree_casts(int width = 0);
+// In vectors of 4 or 8 lanes; of 4 where this machine has no instructions for 8. 0: the widest. A call for each, so
+// that a program that asks for one does not carry the other.
+QueryTreeCast query_tree_cast(int width = 0);
+QueryTreeCasts query_tree_casts(int width = 0);
 
 }  // namespace lendulet

@@ -242,10 +242,5 @@ void cast_many(const ManyCasts& casts) {
     while (t.node_count + t.box_count > 0) t.take_turn();
 }
 
-template <class F>
-constexpr QueryTreeCasts make_query_tree_casts() {
-    return {cast_one<F>, cast_many<F>};
-}
-
 }  // namespace
 }  // namespace lendulet::LENDULET_KERNEL_SPACE

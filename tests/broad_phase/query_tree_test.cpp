@@ -197,10 +197,10 @@ TEST(QueryTree, CastsVisitWhatTheyMeet) {
                            sizeof(BroadBox)};
             m.tree.add_to(many);
             ASSERT_EQ(many.tree_count, 1);
-            query_tree_casts(width).many(many);
+            query_tree_casts(width)(many);
             for (size_t i = 0; i < casts.size(); ++i) {
                 Visited single{std::vector<std::vector<uint32_t>>(1), &limits[i]};
-                query_tree_casts(width).one(many.trees[0], casts[i], limits[i], {Visited::one, &single});
+                query_tree_cast(width)(many.trees[0], casts[i], limits[i], {Visited::one, &single});
                 std::vector<uint32_t>&found = all.of[i], &alone = single.of[0];
                 std::sort(found.begin(), found.end());
                 std::sort(alone.begin(), alone.end());

@@ -68,7 +68,7 @@ public:
         casts.items = reinterpret_cast<const char*>(targets_.data()), casts.item_size = sizeof(QueryTarget);
         moving_tree_.add_to(casts);
         fixed_tree_.add_to(casts);
-        if (casts.tree_count > 0) query_tree_casts().many(casts);
+        if (casts.tree_count > 0) query_tree_casts()(casts);
     }
     template <class Visit>
     void nearest(const float lower[3], const float upper[3], float limit, Visit&& visit) const {
