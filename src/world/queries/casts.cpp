@@ -21,10 +21,8 @@ struct RayProbe {
           swept{{r.origin.x, r.origin.y, r.origin.z}, {r.translation.x, r.translation.y, r.translation.z}, {}} {}
     float limit() const { return ray.max_fraction; }
     bool test(const Geometry& g, const QueryTarget& t, double limit, Hit& hit) const {
-        if (!t.is_box) return cast_at(g, t.position, t.rotation, t.radius, ray, limit, hit);
-        BoxTrial trial;
-        trial.begin(t, ray, limit);
-        return trial.finish(hit);
+        if (t.is_box) return cast_at_box(t, ray, limit, hit);
+        return cast_at(g, t.position, t.rotation, t.radius, ray, limit, hit);
     }
     QueryHit finished(const Hit& hit) const { return make_hit(hit, ray); }
 };

@@ -79,6 +79,7 @@ struct BoxTrial {
         return true;
     }
 };
+bool cast_at_box(const QueryTarget& box, const QueryRay& ray, double limit, LocalRayHit& hit);
 bool cast_at(const Geometry& g, Vec3 position, Quat rotation, const QueryCast& cast, double limit, CastHit& hit);
 
 inline Vec3d in_double(Position p) { return {p.x, p.y, p.z}; }
