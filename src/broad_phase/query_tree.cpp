@@ -218,6 +218,15 @@ bool QueryTree::refit(const BroadBox* boxes) {
     return true;
 }
 
+void QueryTree::add_to(ManyCasts& casts) const {
+    for (uint32_t index : unbounded_)
+        for (int i = 0; i < casts.count; ++i) {
+            const CastVisit visit{i, index};
+            casts.visit(casts.context, &visit, 1);
+        }
+    if (!nodes_.empty()) casts.trees[casts.tree_count++] = nodes_.data();
+}
+
 size_t QueryTree::bytes() const {
     return nodes_.bytes() + parents_.bytes() + places_.bytes() + unbounded_.bytes() + items_.bytes();
 }

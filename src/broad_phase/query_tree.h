@@ -7,10 +7,12 @@
 #pragma once
 
 #include <cfloat>
+#include <type_traits>
 
 #include "base/memory.h"
 #include "broad_phase/block.h"
 #include "broad_phase/box.h"
+#include "broad_phase/query_tree_cast.h"
 
 namespace lendulet {
 
@@ -36,9 +38,11 @@ public:
     // All walks call visit(index) for every box that may be met, and some just beside: bounds are tested with a margin
     // for rounding. `visit` of cast and nearest returns how far the search still goes.
 
-    // Boxes that a box of half extents `half` about origin + t * translation meets for t in [0, limit], roughly by t.
+    // Boxes that `swept` meets for t in [0, limit], roughly by t.
     template <class Visit>
-    void cast(const float origin[3], const float translation[3], const float half[3], float limit, Visit&& visit) const;
+    void cast(const SweptBox& swept, float limit, Visit&& visit) const;
+    // The same for each of many, through this tree and what `casts` has already: by turns, once all have been added.
+    void add_to(ManyCasts& casts) const;
     // Boxes that overlap [lower, upper].
     template <class Visit>
     void overlapping(const float lower[3], const float upper[3], Visit&& visit) const;
@@ -49,16 +53,11 @@ public:
     size_t bytes() const;
 
 private:
-    static constexpr int heuristic_depth = 20;  // below it parts are halved by number
-    static constexpr int max_depth = heuristic_depth + 12;
-    static constexpr float margin = 2e-6f;  // relative; some roundings of a float
+    using Node = QueryNode;
+    static constexpr int heuristic_depth = query_tree::heuristic_depth, max_depth = query_tree::max_depth;
+    static constexpr float margin = query_tree::margin;
     static constexpr uint32_t beside = no_box - 1u, no_parent = ~0u;
 
-    // child >= 0: node; < 0: ~index of a box. Empty lanes have inverted boxes.
-    struct alignas(64) Node {
-        BoxBlock box;
-        int32_t child[block_size];
-    };
     struct Item {
         float lower[3], upper[3];
         uint32_t index;
@@ -102,6 +101,7 @@ private:
     template <class Keys, class Visit>
     void walk(float limit, Keys&& keys_of, Visit&& visit) const;
 
+    const QueryTreeCast cast_ = query_tree_cast();
     int count_ = 0, built_count_ = 0;
     int changes_ = 0;  // since its size was last looked at
     bool worn_ = false;
@@ -138,38 +138,12 @@ void QueryTree::walk(float limit, Keys&& keys_of, Visit&& visit) const {
 }
 
 template <class Visit>
-void QueryTree::cast(const float origin[3], const float translation[3], const float half[3], float limit,
-                     Visit&& visit) const {
-    // The slab test of Kay and Kajiya 1986 with a reciprocal. Where the box does not move along an axis a huge number
-    // stands for it: what is outside is then entered far beyond any limit.
-    Float4 from_near[3], from_far[3], inverse[3];
-    int near[3], far[3];  // places of the sides that are entered and left, in floats from the start of a block
-    for (int d = 0; d < 3; ++d) {
-        constexpr int upper = 3 * block_size;
-        bool forwards = translation[d] >= 0.0f;
-        float grown = half[d] + margin * (absolute(origin[d]) + half[d]);
-        from_near[d] = splat<Float4>(forwards ? origin[d] + grown : origin[d] - grown);
-        from_far[d] = splat<Float4>(forwards ? origin[d] - grown : origin[d] + grown);
-        near[d] = d * block_size + (forwards ? 0 : upper), far[d] = d * block_size + (forwards ? upper : 0);
-        float along = absolute(translation[d]) > 1e-25f ? translation[d] : forwards ? 1e-25f : -1e-25f;
-        inverse[d] = splat<Float4>(1.0f / along);
-    }
-    auto keys_of = [&](const BoxBlock& box, float now, float keys[block_size]) {
-        const float* sides = box.lower[0];
-        uint32_t hits = 0;
-        for (int lanes = 0; lanes < block_size; lanes += 4) {
-            Float4 enter = splat<Float4>(0.0f), leave = splat<Float4>(now);
-            for (int d = 0; d < 3; ++d) {
-                enter = maximum((load_wide<Float4>(sides + near[d] + lanes) - from_near[d]) * inverse[d], enter);
-                leave = minimum((load_wide<Float4>(sides + far[d] + lanes) - from_far[d]) * inverse[d], leave);
-            }
-            enter = enter * splat<Float4>(1.0f - margin);
-            hits |= mask_bits(enter <= leave) << lanes;
-            store_wide(keys + lanes, enter);
-        }
-        return hits;
-    };
-    walk(limit, keys_of, visit);
+void QueryTree::cast(const SweptBox& swept, float limit, Visit&& visit) const {
+    for (uint32_t index : unbounded_) limit = visit(index);
+    if (nodes_.empty()) return;
+    using Called = std::remove_reference_t<Visit>;
+    auto called = [](void* context, uint32_t index) -> float { return (*static_cast<Called*>(context))(index); };
+    cast_(nodes_.data(), swept, limit, {called, &visit});
 }
 
 template <class Visit>

@@ -129,5 +129,92 @@ TEST(QueryTree, BecomesWornAsItGrows) {
     EXPECT_FALSE(m.tree.is_worn());
 }
 
+// Casts of both widths, one by one and by turns, visit every box that they meet, each once.
+struct Visited {
+    std::vector<std::vector<uint32_t>> of;
+    float* limit;
+    static float one(void* context, uint32_t index) {
+        static_cast<Visited*>(context)->of[0].push_back(index);
+        return *static_cast<Visited*>(context)->limit;
+    }
+    static void many(void* context, const CastVisit* visits, int count) {
+        for (int k = 0; k < count; ++k)
+            static_cast<Visited*>(context)->of[static_cast<size_t>(visits[k].cast)].push_back(visits[k].index);
+    }
+};
+
+SweptBox random_cast(Random& random) {
+    SweptBox s;
+    for (int d = 0; d < 3; ++d) {
+        s.origin[d] = random.uniform(-25.0f, 25.0f);
+        s.translation[d] = random.below(4) == 0 ? (random.below(2) ? 0.0f : -0.0f) : random.uniform(-40.0f, 40.0f);
+        s.half[d] = random.below(2) ? 0.0f : random.uniform(0.0f, 1.0f);
+    }
+    return s;
+}
+
+// In double; `slack` is how much nearer than that a box may be.
+bool crosses(const BroadBox& b, const SweptBox& s, double limit, double slack) {
+    double enter = 0.0, leave = limit;
+    for (int d = 0; d < 3; ++d) {
+        const double low = double{b.lower[d]} - s.half[d] - slack, high = double{b.upper[d]} + s.half[d] + slack;
+        const double from = s.origin[d], along = s.translation[d];
+        if (along == 0.0) {
+            if (from < low || from > high) return false;
+            continue;
+        }
+        enter = std::max(enter, std::min((low - from) / along, (high - from) / along));
+        leave = std::min(leave, std::max((low - from) / along, (high - from) / along));
+    }
+    return enter <= leave;
+}
+
+TEST(QueryTree, CastsVisitWhatTheyMeet) {
+    Random random(6);
+    for (int size : {1, 3, 40, 600}) {
+        Model m;
+        for (uint32_t i = 0; i < static_cast<uint32_t>(size); ++i) {
+            m.boxes.push_back(m.random_box(random, i));
+            m.boxes.back().lower[1] = std::max(m.boxes.back().lower[1], -20.0f);
+        }
+        m.build();
+        std::vector<SweptBox> casts;
+        std::vector<float> limits;
+        for (int i = 0; i < scaled(200, 50); ++i) {
+            casts.push_back(random_cast(random));
+            limits.push_back(random.uniform(0.0f, 1.0f));
+        }
+        for (int width : {4, 0}) {
+            Visited all{std::vector<std::vector<uint32_t>>(casts.size()), limits.data()};
+            ManyCasts many{{},
+                           0,
+                           casts.data(),
+                           limits.data(),
+                           static_cast<int>(casts.size()),
+                           &all,
+                           Visited::many,
+                           reinterpret_cast<const char*>(m.boxes.data()),
+                           sizeof(BroadBox)};
+            m.tree.add_to(many);
+            ASSERT_EQ(many.tree_count, 1);
+            query_tree_casts(width)(many);
+            for (size_t i = 0; i < casts.size(); ++i) {
+                Visited single{std::vector<std::vector<uint32_t>>(1), &limits[i]};
+                query_tree_cast(width)(many.trees[0], casts[i], limits[i], {Visited::one, &single});
+                std::vector<uint32_t>&found = all.of[i], &alone = single.of[0];
+                std::sort(found.begin(), found.end());
+                std::sort(alone.begin(), alone.end());
+                EXPECT_EQ(found, alone);
+                EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "one was found twice";
+                for (const BroadBox& b : m.boxes) {
+                    const bool visited = std::binary_search(found.begin(), found.end(), b.index);
+                    EXPECT_TRUE(visited || !crosses(b, casts[i], limits[i], 0.0));
+                    EXPECT_TRUE(!visited || crosses(b, casts[i], limits[i], 1e-3));
+                }
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace lendulet

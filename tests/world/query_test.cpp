@@ -221,6 +221,33 @@ TEST(Queries, PointsAreInWhatContainsThem) {
     EXPECT_GT(inside, scaled(80, 2));
 }
 
+// Batches of any size, of which groups go by turns, and with every filter.
+TEST(Queries, BatchesOfRaysAskWhomTheFilterNames) {
+    World world = mixed_world(1, BroadPhaseType::wide_tree);
+    run(world, 60);
+    Random random{16};
+    const BodyId one = world.body(world.body_count() / 2);
+    const QueryFilter filters[] = {
+        {}, {.ignore_body = one}, {.only_body = one}, {.see_fixed = false}, {.see_dynamic = false}};
+    int hits = 0;
+    for (const QueryFilter& filter : filters)
+        for (size_t size : {0, 1, 2, 11, 12, 13, 63, 64, 65, 200}) {
+            std::vector<Ray> rays;
+            for (size_t i = 0; i < size; ++i) {
+                rays.push_back(random_ray(random));
+                if (i % 7 == 0) rays.back().translation.x = -0.0f, rays.back().translation.z = 0.0f;
+                if (i % 5 == 0) rays.back().max_fraction = random.in(0.0f, 3.0f);
+            }
+            std::vector<QueryHit> out(size);
+            world.cast_rays(rays, out, filter).value();
+            for (size_t i = 0; i < size; ++i) {
+                ASSERT_TRUE(same(out[i], world.cast_ray(rays[i], filter).value())) << size << " " << i;
+                hits += out[i].hit;
+            }
+        }
+    EXPECT_GT(hits, 500);
+}
+
 // The same bits from one call over an array as from single calls, with any number of workers and any broad phase.
 TEST(Queries, BatchesGiveWhatSingleCallsGive) {
     std::vector<Ray> rays;

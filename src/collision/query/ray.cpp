@@ -10,17 +10,6 @@ namespace {
 // Hulls of more faces are cast at by distances, whose cost grows with the logarithm of the corners.
 constexpr size_t clipped_faces = 256;
 
-bool from_chord(const Chord& chord, const LocalRay& ray, LocalRayHit& hit) {
-    if (chord.enter > ray.max_fraction || chord.leave < 0.0) return false;
-    hit = {chord.enter, chord.normal};
-    if (chord.enter < 0.0) {
-        hit.fraction = 0.0;
-        hit.normal = (-1.0 / length(ray.translation)) * ray.translation;
-        hit.inside = true;
-    }
-    return true;
-}
-
 bool cast_ray_plane(const Geometry& g, const LocalRay& ray, LocalRayHit& hit) {
     Vec3d normal = to_double(g.size);
     double height = dot(normal, ray.origin) - g.offset, along = dot(normal, ray.translation);

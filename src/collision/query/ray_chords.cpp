@@ -5,7 +5,7 @@
 namespace lendulet {
 namespace {
 
-constexpr double infinite = 1e300;
+constexpr double infinite = infinite_fraction;
 
 // Keeps of the chord what lies in [enter, leave]; the normal is that of the later entry.
 void cut(Chord& chord, double enter, double leave, Vec3d normal) {
@@ -71,13 +71,6 @@ bool chord_of_ball(const LocalRay& line, Vec3d centre, double radius, Chord& cho
     double half = square_root(left / dot(r.translation, r.translation));
     chord = {shift - half, shift + half, (1.0 / radius) * (r.origin - half * r.translation)};
     return true;
-}
-
-bool chord_of_box(const LocalRay& line, Vec3d half, Chord& chord) {
-    chord = {-infinite, infinite, {}};
-    return cut_by_plane(line, {1.0, 0.0, 0.0}, half.x, chord) && cut_by_plane(line, {-1.0, 0.0, 0.0}, half.x, chord) &&
-           cut_by_plane(line, {0.0, 1.0, 0.0}, half.y, chord) && cut_by_plane(line, {0.0, -1.0, 0.0}, half.y, chord) &&
-           cut_by_plane(line, {0.0, 0.0, 1.0}, half.z, chord) && cut_by_plane(line, {0.0, 0.0, -1.0}, half.z, chord);
 }
 
 // The side is x^2 + z^2 = (middle + slope y)^2.

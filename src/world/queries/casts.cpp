@@ -1,129 +1,210 @@
 // Rays and shape casts through a world.
 #include <algorithm>
 
+#include "base/prefetch.h"
 #include "world/queries/query.h"
 
 namespace lendulet {
 namespace {
 
-constexpr int rays_per_task = 64, casts_per_task = 8;
-// Fewer rays than this are cast in the order given.
-constexpr size_t ordered_rays = 512;
+constexpr int casts_per_task = 8;
 
 // A ray on its way through the world's colliders: what the walks need, and the exact test.
 struct RayProbe {
     using Hit = LocalRayHit;
-    const WorldData& world;
-    const QueryRay ray;
-    float origin[3], translation[3], half[3] = {};
+    QueryRay ray;
+    SweptBox swept;
 
-    RayProbe(const WorldData& w, const Ray& r)
-        : world(w),
-          ray(r),
-          origin{r.origin.x, r.origin.y, r.origin.z},
-          translation{r.translation.x, r.translation.y, r.translation.z} {}
-    float limit() const { return ray.given.max_fraction; }
-    bool test(uint32_t c, const QueryTarget& t, double limit, Hit& hit) const {
-        return cast_at(world.colliders.geometry[c], t.position, t.rotation, t.radius, ray, limit, hit);
+    RayProbe() = default;
+    explicit RayProbe(const Ray& r)
+        : ray(r),
+          swept{{r.origin.x, r.origin.y, r.origin.z}, {r.translation.x, r.translation.y, r.translation.z}, {}} {}
+    float limit() const { return ray.max_fraction; }
+    bool test(const Geometry& g, const QueryTarget& t, double limit, Hit& hit) const {
+        if (t.is_box) return cast_at_box(t, ray, limit, hit);
+        return cast_at(g, t.position, t.rotation, t.radius, ray, limit, hit);
     }
     QueryHit finished(const Hit& hit) const { return make_hit(hit, ray); }
 };
 
 struct ShapeProbe {
     using Hit = CastHit;
-    const WorldData& world;
     const QueryCast& cast;
-    float origin[3], translation[3], half[3];
+    SweptBox swept;
 
-    ShapeProbe(const WorldData& w, const QueryCast& c) : world(w), cast(c) {
+    explicit ShapeProbe(const QueryCast& c) : cast(c) {
         Vec3 middle = from_origin(c.shape.pose.position) + 0.5f * (c.lower + c.upper), h = 0.5f * (c.upper - c.lower);
         Vec3 along = to_float(c.motion.translation);
-        origin[0] = middle.x, origin[1] = middle.y, origin[2] = middle.z;
-        translation[0] = along.x, translation[1] = along.y, translation[2] = along.z;
-        half[0] = h.x, half[1] = h.y, half[2] = h.z;
+        swept = {{middle.x, middle.y, middle.z}, {along.x, along.y, along.z}, {h.x, h.y, h.z}};
     }
     float limit() const { return cast.max_fraction; }
-    bool test(uint32_t c, const QueryTarget& t, double limit, Hit& hit) const {
-        return cast_at(world.colliders.geometry[c], t.position, t.rotation, cast, limit, hit);
+    bool test(const Geometry& g, const QueryTarget& t, double limit, Hit& hit) const {
+        return cast_at(g, t.position, t.rotation, cast, limit, hit);
     }
     QueryHit finished(const Hit& hit) const { return make_hit(hit, cast.shape.pose.position); }
 };
 
+// Whom a query asks, and which of its colliders it sees.
+struct Asked {
+    const WorldData& world;
+    const QueryFilter& filter;
+    const uint32_t ignored;
+
+    Asked(const WorldData& w, const QueryFilter& f) : world(w), filter(f), ignored(ignored_slot(f)) {}
+    // The exact test against collider c up to fraction `limit`; false, too, where it is not seen.
+    template <class Probe>
+    bool meets(const Probe& probe, uint32_t c, double limit, typename Probe::Hit& hit) const {
+        const QueryTarget& t = world.query_scene.target(c);
+        return is_seen(t, ignored, filter) && probe.test(world.colliders.geometry[c], t, limit, hit);
+    }
+};
+
 // visit(collider) for whatever the probe may meet; it returns how far the search still goes.
 template <class Probe, class Visit>
-void for_each_candidate(const Probe& probe, const QueryFilter& filter, Visit&& visit) {
-    float limit = probe.limit();
-    if (filter.only_body)
-        return for_each_collider(probe.world, filter.only_body.index, [&](uint32_t c) { limit = visit(c, limit); });
-    probe.world.query_scene.cast(probe.origin, probe.translation, probe.half, limit,
-                                 [&](uint32_t c) { return limit = visit(c, limit); });
+void for_each_candidate(const Asked& asked, const Probe& probe, Visit&& visit) {
+    if (asked.filter.only_body) return for_each_collider(asked.world, asked.filter.only_body.index, visit);
+    asked.world.query_scene.cast(probe.swept, probe.limit(), visit);
 }
 
 // The fraction as a limit for walks: not less.
 float rounded_up(double fraction) { return static_cast<float>(fraction * 1.0000002); }
 
+// What a probe meets first of what it has been tested with.
 template <class Probe>
-QueryHit first_hit(const Probe& probe, const QueryFilter& filter) {
-    const QueryScene& scene = probe.world.query_scene;
-    const uint32_t ignored = ignored_slot(filter);
-    typename Probe::Hit best, found;
-    uint32_t best_collider = no_slot;
-    double limit = probe.limit();
-    for_each_candidate(probe, filter, [&](uint32_t c, float walk_limit) {
-        const QueryTarget& t = scene.target(c);
-        if (!is_seen(t, ignored, filter) || !probe.test(c, t, limit, found)) return walk_limit;
-        bool first = best_collider == no_slot || found.fraction < best.fraction ||
-                     (found.fraction == best.fraction && c < best_collider);
-        if (!first) return walk_limit;
-        best = found;
-        best_collider = c;
+struct FirstHit {
+    double limit;
+    float walk_limit;
+    uint32_t collider = no_slot;
+    typename Probe::Hit hit;
+
+    FirstHit() = default;
+    explicit FirstHit(const Probe& probe) : limit(probe.limit()), walk_limit(probe.limit()) {}
+    void test(const Asked& asked, const Probe& probe, uint32_t c) {
+        typename Probe::Hit found;
+        if (asked.meets(probe, c, limit, found)) take(c, found);
+    }
+    // Collider c is met. True where before all others.
+    bool take(uint32_t c, const typename Probe::Hit& found) {
+        if (collider != no_slot && !(found.fraction < limit || (found.fraction == limit && c < collider))) return false;
+        hit = found;
+        collider = c;
         limit = found.fraction;
-        return rounded_up(limit);
+        walk_limit = rounded_up(limit);
+        return true;
+    }
+    QueryHit finished(const Asked& asked, const Probe& probe) const {
+        if (collider == no_slot) return {};
+        QueryHit out = probe.finished(hit);
+        name_collider(asked.world, collider, out);
+        return out;
+    }
+};
+
+template <class Probe>
+QueryHit first_hit(const Asked& asked, const Probe& probe) {
+    FirstHit<Probe> first(probe);
+    for_each_candidate(asked, probe, [&](uint32_t c) {
+        first.test(asked, probe, c);
+        return first.walk_limit;
     });
-    if (best_collider == no_slot) return {};
-    QueryHit hit = probe.finished(best);
-    name_collider(probe.world, best_collider, hit);
-    return hit;
+    return first.finished(asked, probe);
+}
+
+// Rays that take their way through the trees by turns. What they meet does not depend on it: the tests are those of
+// single rays, and the first of all hits is the same in whatever order they are found.
+struct RayGroup {
+    static constexpr int room = 64;
+    const Asked& asked;
+    int count = 0;
+    RayProbe probe[room];
+    FirstHit<RayProbe> first[room];
+    SweptBox swept[room];
+    float limit[room];
+    BoxTrial trials[most_visits];
+
+    explicit RayGroup(const Asked& a) : asked(a) {}
+    void add(const Ray& ray) {
+        probe[count] = RayProbe(ray);
+        first[count] = FirstHit<RayProbe>(probe[count]);
+        swept[count] = probe[count].swept;
+        limit[count] = ray.max_fraction;
+        ++count;
+    }
+    static void visit(void* group, const CastVisit* visits, int count) {
+        static_cast<RayGroup*>(group)->visit(visits, count);
+    }
+    // Which boxes are met cannot be foreseen, so all are tested before the first is looked at.
+    void visit(const CastVisit* visits, int visit_count) {
+        const QueryScene& scene = asked.world.query_scene;
+        for (int k = 0; k < visit_count; ++k) {
+            const auto [i, c] = visits[k];
+            const QueryTarget& t = scene.target(c);
+            if (t.is_box) trials[k].begin(t, probe[i].ray, first[i].limit);
+        }
+        for (int k = 0; k < visit_count; ++k) {
+            const auto [i, c] = visits[k];
+            const QueryTarget& t = scene.target(c);
+            LocalRayHit found;
+            const bool met = t.is_box ? trials[k].finish(found) && is_seen(t, asked.ignored, asked.filter)
+                                      : asked.meets(probe[i], c, first[i].limit, found);
+            if (!met || !first[i].take(c, found)) continue;
+            limit[i] = first[i].walk_limit;
+            // What is read when the group is finished.
+            prefetch(&asked.world.colliders.info[c]);
+            prefetch(&asked.world.bodies.info[t.body]);
+        }
+    }
+    void cast() {
+        if (!asked.filter.only_body)
+            return asked.world.query_scene.cast_many({{}, 0, swept, limit, count, this, visit, nullptr, 0});
+        for (int i = 0; i < count; ++i)
+            for_each_collider(asked.world, asked.filter.only_body.index,
+                              [&](uint32_t c) { first[i].test(asked, probe[i], c); });
+    }
+    QueryHit finished(int i) const { return first[i].finished(asked, probe[i]); }
+};
+
+void cast_in_groups(const Asked& asked, std::span<const Ray> rays, std::span<QueryHit> out) {
+    constexpr size_t room = RayGroup::room;
+    for (size_t begin = 0; begin < rays.size(); begin += room) {
+        const size_t count = rays.size() - begin < room ? rays.size() - begin : room;
+        RayGroup group(asked);
+        for (size_t i = 0; i < count; ++i) group.add(rays[begin + i]);
+        group.cast();
+        for (size_t i = 0; i < count; ++i) out[begin + i] = group.finished(static_cast<int>(i));
+    }
 }
 
 template <class Probe>
-bool any_hit(const Probe& probe, const QueryFilter& filter) {
-    const QueryScene& scene = probe.world.query_scene;
-    const uint32_t ignored = ignored_slot(filter);
+bool any_hit(const Asked& asked, const Probe& probe) {
     bool any = false;
-    for_each_candidate(probe, filter, [&](uint32_t c, float walk_limit) {
-        const QueryTarget& t = scene.target(c);
+    for_each_candidate(asked, probe, [&](uint32_t c) {
         typename Probe::Hit found;
-        if (any || !is_seen(t, ignored, filter) || !probe.test(c, t, probe.limit(), found)) return walk_limit;
-        any = true;
-        return -1.0f;  // nothing more
+        any = any || asked.meets(probe, c, probe.limit(), found);
+        return any ? -1.0f : probe.limit();  // nothing more
     });
     return any;
 }
 
 template <class Probe>
-int all_hits(const Probe& probe, const QueryFilter& filter, std::span<QueryHit> out) {
-    const QueryScene& scene = probe.world.query_scene;
-    const uint32_t ignored = ignored_slot(filter);
+int all_hits(const Asked& asked, const Probe& probe, std::span<QueryHit> out) {
     struct Met {
         double fraction;
         uint32_t collider;
         typename Probe::Hit hit;
     };
     Array<Met> met;
-    for_each_candidate(probe, filter, [&](uint32_t c, float walk_limit) {
-        const QueryTarget& t = scene.target(c);
+    for_each_candidate(asked, probe, [&](uint32_t c) {
         typename Probe::Hit found;
-        if (is_seen(t, ignored, filter) && probe.test(c, t, probe.limit(), found))
-            met.push_back({found.fraction, c, found});
-        return walk_limit;
+        if (asked.meets(probe, c, probe.limit(), found)) met.push_back({found.fraction, c, found});
+        return probe.limit();
     });
     std::sort(met.begin(), met.end(), [](const Met& a, const Met& b) {  // order: total
         return a.fraction != b.fraction ? a.fraction < b.fraction : a.collider < b.collider;
     });
     for (size_t i = 0; i < met.size() && i < out.size(); ++i) {
         out[i] = probe.finished(met[i].hit);
-        name_collider(probe.world, met[i].collider, out[i]);
+        name_collider(asked.world, met[i].collider, out[i]);
     }
     return met.count();
 }
@@ -136,47 +217,6 @@ Status checked(const WorldData& world, const Ray& ray, const QueryFilter& filter
 Result<QueryCast> checked(const WorldData& world, const ShapeCast& cast, const QueryFilter& filter, const char* call) {
     if (Status s = check_filter(world, filter, call); !s) return s.error();
     return check_cast(cast, call);
-}
-
-// Which of 16 cells along each axis of [low, low + 16 / scale] x lies in, spread so that six axes interleave.
-uint32_t spread_cell(float x, float low, float scale) {
-    float cell = (x - low) * scale;
-    uint32_t i = cell >= 15.0f ? 15u : cell > 0.0f ? static_cast<uint32_t>(cell) : 0u;
-    return (i & 1u) | (i & 2u) << 5 | (i & 4u) << 10 | (i & 8u) << 15;
-}
-
-// The order in which rays are cast: those that start and end near each other one after the other, so that they find
-// the same parts of the trees still in the caches. It has no influence on what they meet.
-Array<uint32_t> coherent_order(std::span<const Ray> rays) {
-    float low[6], high[6];
-    auto coordinate = [](const Ray& r, int k) {
-        Vec3 p = k < 3 ? from_origin(r.origin) : from_origin(r.origin + r.max_fraction * r.translation);
-        return clamp(component(p, k % 3), -1e30f, 1e30f);
-    };
-    for (int k = 0; k < 6; ++k) {
-        low[k] = 1e30f, high[k] = -1e30f;
-        for (const Ray& r : rays) {
-            float x = coordinate(r, k);
-            low[k] = minimum(low[k], x), high[k] = maximum(high[k], x);
-        }
-    }
-    Array<uint32_t> keys, order, sorted;
-    keys.resize(rays.size());
-    order.resize_unset(rays.size());
-    sorted.resize_unset(rays.size());
-    for (int k = 0; k < 6; ++k) {
-        float scale = high[k] > low[k] ? 16.0f / (high[k] - low[k]) : 0.0f;
-        for (size_t i = 0; i < rays.size(); ++i) keys[i] |= spread_cell(coordinate(rays[i], k), low[k], scale) << k;
-    }
-    for (size_t i = 0; i < rays.size(); ++i) order[i] = static_cast<uint32_t>(i);
-    for (int shift = 0; shift < 24; shift += 12) {  // by counting, 12 bits at a time
-        uint32_t first[4097] = {};
-        for (uint32_t i : order) ++first[((keys[i] >> shift) & 4095u) + 1u];
-        for (int b = 0; b < 4096; ++b) first[b + 1] += first[b];
-        for (uint32_t i : order) sorted[first[(keys[i] >> shift) & 4095u]++] = i;
-        order.swap(sorted);
-    }
-    return order;
 }
 
 Error at_place(const Error& error, size_t i) {
@@ -194,19 +234,19 @@ Status check_lengths(size_t in, size_t out, const char* call) {
 Result<QueryHit> World::cast_ray(const Ray& ray, const QueryFilter& filter) const {
     if (Status s = checked(*data_, ray, filter, "cast_ray"); !s) return s.error();
     data_->query_scene.refresh(*data_);
-    return first_hit(RayProbe(*data_, ray), filter);
+    return first_hit(Asked(*data_, filter), RayProbe(ray));
 }
 
 Result<bool> World::cast_ray_any(const Ray& ray, const QueryFilter& filter) const {
     if (Status s = checked(*data_, ray, filter, "cast_ray_any"); !s) return s.error();
     data_->query_scene.refresh(*data_);
-    return any_hit(RayProbe(*data_, ray), filter);
+    return any_hit(Asked(*data_, filter), RayProbe(ray));
 }
 
 Result<int> World::cast_ray_all(const Ray& ray, std::span<QueryHit> out, const QueryFilter& filter) const {
     if (Status s = checked(*data_, ray, filter, "cast_ray_all"); !s) return s.error();
     data_->query_scene.refresh(*data_);
-    return all_hits(RayProbe(*data_, ray), filter, out);
+    return all_hits(Asked(*data_, filter), RayProbe(ray), out);
 }
 
 Status World::cast_rays(std::span<const Ray> rays, std::span<QueryHit> out, const QueryFilter& filter) {
@@ -217,13 +257,10 @@ Status World::cast_rays(std::span<const Ray> rays, std::span<QueryHit> out, cons
     for (size_t i = 0; i < rays.size(); ++i)
         if (Status s = check_ray(rays[i], call); !s) return at_place(s.error(), i);
     world.query_scene.refresh(world);
-    Array<uint32_t> order;
-    if (rays.size() >= ordered_rays) order = coherent_order(rays);
-    world.tasks.for_each(static_cast<int>(rays.size()), rays_per_task, [&](int begin, int end, int) {
-        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
-            size_t k = order.empty() ? i : order[i];
-            out[k] = first_hit(RayProbe(world, rays[k]), filter);
-        }
+    const Asked asked(world, filter);
+    world.tasks.for_each(static_cast<int>(rays.size()), RayGroup::room, [&](int begin, int end, int) {
+        const auto first = static_cast<size_t>(begin), count = static_cast<size_t>(end - begin);
+        cast_in_groups(asked, rays.subspan(first, count), out.subspan(first, count));
     });
     return {};
 }
@@ -232,21 +269,21 @@ Result<QueryHit> World::cast_shape(const ShapeCast& cast, const QueryFilter& fil
     Result<QueryCast> c = checked(*data_, cast, filter, "cast_shape");
     if (!c) return c.error();
     data_->query_scene.refresh(*data_);
-    return first_hit(ShapeProbe(*data_, c.value()), filter);
+    return first_hit(Asked(*data_, filter), ShapeProbe(c.value()));
 }
 
 Result<bool> World::cast_shape_any(const ShapeCast& cast, const QueryFilter& filter) const {
     Result<QueryCast> c = checked(*data_, cast, filter, "cast_shape_any");
     if (!c) return c.error();
     data_->query_scene.refresh(*data_);
-    return any_hit(ShapeProbe(*data_, c.value()), filter);
+    return any_hit(Asked(*data_, filter), ShapeProbe(c.value()));
 }
 
 Result<int> World::cast_shape_all(const ShapeCast& cast, std::span<QueryHit> out, const QueryFilter& filter) const {
     Result<QueryCast> c = checked(*data_, cast, filter, "cast_shape_all");
     if (!c) return c.error();
     data_->query_scene.refresh(*data_);
-    return all_hits(ShapeProbe(*data_, c.value()), filter, out);
+    return all_hits(Asked(*data_, filter), ShapeProbe(c.value()), out);
 }
 
 Status World::cast_shapes(std::span<const ShapeCast> casts, std::span<QueryHit> out, const QueryFilter& filter) {
@@ -256,10 +293,11 @@ Status World::cast_shapes(std::span<const ShapeCast> casts, std::span<QueryHit> 
     for (size_t i = 0; i < casts.size(); ++i)
         if (Result<QueryCast> c = checked(world, casts[i], filter, call); !c) return at_place(c.error(), i);
     world.query_scene.refresh(world);
+    const Asked asked(world, filter);
     world.tasks.for_each(static_cast<int>(casts.size()), casts_per_task, [&](int begin, int end, int) {
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
             Result<QueryCast> c = check_cast(casts[i], call);
-            out[i] = first_hit(ShapeProbe(world, c.value()), filter);
+            out[i] = first_hit(asked, ShapeProbe(c.value()));
         }
     });
     return {};

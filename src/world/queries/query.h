@@ -44,21 +44,42 @@ inline bool is_seen(const QueryTarget& t, uint32_t ignored, const QueryFilter& f
 
 // A ray, ready for use.
 struct QueryRay {
-    const Ray& given;
     Vec3d origin, translation;
     double inverse_square;  // 1 / |translation|^2
+    float max_fraction;
 
+    QueryRay() = default;
     explicit QueryRay(const Ray& r)
-        : given(r),
-          origin{r.origin.x, r.origin.y, r.origin.z},
+        : origin{r.origin.x, r.origin.y, r.origin.z},
           translation(to_double(r.translation)),
-          inverse_square(1.0 / dot(translation, translation)) {}
+          inverse_square(1.0 / dot(translation, translation)),
+          max_fraction(r.max_fraction) {}
 };
 
 // The ray, or cast, up to fraction `limit` against one target that lies within `radius` of its position; true with the
 // hit's fraction, normal (world axes) and triangle.
 bool cast_at(const Geometry& g, Vec3 position, Quat rotation, float radius, const QueryRay& ray, double limit,
              LocalRayHit& hit);
+// The same against a sharp box in two parts, of which the first has no branches.
+struct BoxTrial {
+    Mat3d rotation;
+    LocalRay ray;
+    Chord chord;
+    bool crosses;  // the line has a part in the box
+
+    LENDULET_FORCE_INLINE void begin(const QueryTarget& box, const QueryRay& given, double limit) {
+        const Vec3d from = given.origin - to_double(box.position);
+        rotation = exact_rotation(box.rotation);
+        ray = {transpose_multiply(rotation, from), transpose_multiply(rotation, given.translation), limit};
+        crosses = chord_of_box(ray, to_double(box.half), chord);
+    }
+    LENDULET_FORCE_INLINE bool finish(LocalRayHit& hit) const {
+        if (!crosses || !from_chord(chord, ray, hit)) return false;
+        hit.normal = rotation * hit.normal;
+        return true;
+    }
+};
+bool cast_at_box(const QueryTarget& box, const QueryRay& ray, double limit, LocalRayHit& hit);
 bool cast_at(const Geometry& g, Vec3 position, Quat rotation, const QueryCast& cast, double limit, CastHit& hit);
 
 inline Vec3d in_double(Position p) { return {p.x, p.y, p.z}; }

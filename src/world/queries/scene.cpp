@@ -117,6 +117,9 @@ void QueryScene::place(const WorldData& world, uint32_t c) {
     t.category = info.filter.category, t.mask = info.filter.mask, t.group = info.filter.group;
     t.type = static_cast<uint8_t>(world.bodies.info[info.body].type);
     t.is_trigger = info.is_trigger;
+    const Geometry& geometry = world.colliders.geometry[c];
+    t.half = geometry.size;
+    t.is_box = geometry.kind == GeometryKind::box && !(geometry.rounding > 0.0f);
     boxes_[c] = box_of(world, c);
 }
 

@@ -19,16 +19,17 @@ namespace lendulet {
 
 struct WorldData;
 
-// A collider as queries see it.
-struct QueryTarget {
+// A collider as queries see it. A sharp box is all here; what else a ray has to know of a shape is its geometry.
+struct alignas(32) QueryTarget {
     Vec3 position;  // of the shape
     uint32_t body = no_slot;
     Quat rotation;
+    Vec3 half;            // extents of a box, where it is one without rounding
     float radius = 0.0f;  // of a sphere about the position that holds the shape
     uint64_t category = 0, mask = 0;
     uint32_t group = 0;
     uint8_t type = 0;  // BodyType
-    bool is_trigger = false;
+    bool is_trigger = false, is_box = false;
     bool moved = false, changed = false, moves = false;  // is on the list of those
 };
 
@@ -57,11 +58,17 @@ public:
 
     // As the walks of QueryTree, over all colliders: visit(collider) for what may be met. Each once.
     template <class Visit>
-    void cast(const float origin[3], const float translation[3], const float half[3], float limit,
-              Visit&& visit) const {
+    void cast(const SweptBox& swept, float limit, Visit&& visit) const {
         auto from_tree = [&](uint32_t c) { return limit = visit(c); };
-        moving_tree_.cast(origin, translation, half, limit, from_tree);
-        fixed_tree_.cast(origin, translation, half, limit, from_tree);
+        moving_tree_.cast(swept, limit, from_tree);
+        fixed_tree_.cast(swept, limit, from_tree);
+    }
+    // The same for many; of `casts` the trees and the items are set here.
+    void cast_many(ManyCasts casts) const {
+        casts.items = reinterpret_cast<const char*>(targets_.data()), casts.item_size = sizeof(QueryTarget);
+        moving_tree_.add_to(casts);
+        fixed_tree_.add_to(casts);
+        if (casts.tree_count > 0) query_tree_casts()(casts);
     }
     template <class Visit>
     void nearest(const float lower[3], const float upper[3], float limit, Visit&& visit) const {

@@ -21,6 +21,12 @@ bool cast_at(const Geometry& g, Vec3 position, Quat rotation, float radius, cons
     return true;
 }
 
+bool cast_at_box(const QueryTarget& box, const QueryRay& ray, double limit, LocalRayHit& hit) {
+    BoxTrial trial;
+    trial.begin(box, ray, limit);
+    return trial.finish(hit);
+}
+
 bool cast_at(const Geometry& g, Vec3 position, Quat rotation, const QueryCast& cast, double limit, CastHit& hit) {
     Motion still;
     still.pivot = to_double(position) - in_double(cast.shape.pose.position);
