@@ -70,8 +70,8 @@ private:
     void find_changes(TaskPool& tasks);
     void take_out(uint32_t place);
     void put_in(uint32_t place, const BroadBox& box);
-    void replace(TaskPool& tasks, const BroadBox* boxes, int count, Array<BoxPair>& begun, Array<BoxPair>& ended);
-    void sort_changes(Array<BoxPair>& begun, Array<BoxPair>& ended, bool cancel);
+    void replace(TaskPool& tasks, const BroadBox* boxes, int count);
+    void sort_changes(Array<BoxPair>& begun, Array<BoxPair>& ended);
     void note(uint32_t a, uint32_t b, bool begins);
     using Visitor = void (*)(void* context, uint32_t index);
     void visit_groups_of(const WideTreeSet& set, const float lower[3], const float upper[3], Visitor visit,
@@ -91,7 +91,7 @@ private:
     // begin and end.
     Array<uint32_t> special_;
     Array<uint64_t> removed_;  // index << 32 | place
-    Array<BoxPair> changes_;
+    Array<BoxPair> changes_, found_, lost_;
     Array<uint64_t> begun_, ended_, swap_;
 };
 
