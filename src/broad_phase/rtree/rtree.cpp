@@ -1,12 +1,13 @@
 #include "broad_phase/rtree/rtree.h"
 
+#include "broad_phase/rtree/leaf.h"
 #include "broad_phase/rtree/str.h"
 
 namespace lendulet {
 
 namespace {
 
-constexpr int few_boxes = 32;  // packed as they come
+constexpr int few_boxes = block_size * block_size;  // what one group holds is packed as it comes
 // A tree that is changed box by box may end up with more overlap than one that is built, so it is built anew after this
 // many changes for each box. Reinsertion keeps an R*-tree good by itself; what tiles do better than insertion is lost
 // soonest.
@@ -152,8 +153,9 @@ void RTree<policy>::build(const BroadBox* boxes, int count, TaskPool*) {
     links_.reserve(most_nodes);
     nodes_.reserve(most_nodes);
     leaf_.resize_unset(n);
-    if (count <= few_boxes) {
-        pack(boxes, count);
+    packed_ = count <= few_boxes;
+    if (packed_) {
+        if (!pack_bounded(boxes, count)) pack(boxes, count);
     } else if constexpr (policy == RtreePolicy::str) {
         pack_tiles(boxes, count);
     } else {
@@ -161,7 +163,39 @@ void RTree<policy>::build(const BroadBox* boxes, int count, TaskPool*) {
     }
 }
 
-// A few boxes: leaves in the caller's order under the root.
+// A few boxes: leaves in the caller's order under the root. False, and nothing done, where some are unbounded.
+template <RtreePolicy policy>
+bool RTree<policy>::pack_bounded(const BroadBox* boxes, int count) {
+    const Ref first_leaf = root_ + 1;
+    for (int first = 0; first < count; first += block_size) {
+        const int n = count - first < block_size ? count - first : block_size;
+        const Ref leaf = new_node(0);
+        const int lane = static_cast<int>(leaf - first_leaf);
+        Links &links = links_[leaf], &above = links_[root_];
+        for (int k = 0; k < block_size; ++k) links.child[k] = k < n ? static_cast<uint32_t>(first + k) : no_box;
+        const LeafBounds bounds = fill_leaf(blocks_[leaf], links.index, boxes, links.child);
+        if (!bounds.finite()) {
+            blocks_.resize_unset(first_leaf);
+            links_.resize_unset(first_leaf);
+            nodes_.resize_unset(first_leaf);
+            clear_lanes(blocks_[root_]);
+            nodes_[root_].count = 0;
+            return false;
+        }
+        for (int k = 0; k < n; ++k) leaf_[first + k] = leaf;
+        for (int d = 0; d < 3; ++d) {
+            blocks_[root_].lower[d][lane] = bounds.lower[d];
+            blocks_[root_].upper[d][lane] = bounds.upper[d];
+        }
+        above.child[lane] = leaf;
+        above.index[lane] = no_box;
+        nodes_[leaf] = {root_, 0, static_cast<uint16_t>(n)};
+        nodes_[root_].count = static_cast<uint16_t>(lane + 1);
+    }
+    return true;
+}
+
+// The bounded ones in the same way, the others in their list.
 template <RtreePolicy policy>
 void RTree<policy>::pack(const BroadBox* boxes, int count) {
     Ref leaf = no_box;
@@ -423,6 +457,14 @@ WideBox RTree<policy>::bounds_of(Ref group) const {
     float lower[3], upper[3];
     block_bounds(blocks_[group], lower, upper);
     return spread(lower, upper);
+}
+
+template <RtreePolicy policy>
+ScannedBoxes RTree<policy>::leaves() const {
+    if (empty()) return {nullptr, nullptr, 0};
+    constexpr int step = sizeof(Links) / sizeof(uint32_t);
+    const Ref first = links_[root_].child[0];
+    return {&blocks_[first], links_[first].index, count_ - unbounded_.count(), step};
 }
 
 template <RtreePolicy policy>
