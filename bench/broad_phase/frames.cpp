@@ -52,7 +52,7 @@ Frames::Frames(const Cell& cell) : cell_(cell), motion_(cell.distribution, make_
         (fixed ? fixed_ : moving_).push_back(box);
     }
     if (cell.mode == Mode::query) queries_ = make_queries(moving_, queries_per_frame);
-    if (cell.mode == Mode::refit) steps_.resize(static_cast<size_t>(std::clamp(boxes_in_steps / cell.n, 4, 200)));
+    if (cell.mode == Mode::refit) steps_.resize(static_cast<size_t>(std::clamp(boxes_in_steps / cell.n, 4, 200) + 1));
     next_sample();
 }
 
@@ -76,13 +76,16 @@ int Frames::frames_for(double frame_ns) const {
     return std::clamp(static_cast<int>(least_sample_ns / std::max(frame_ns, 1.0)), 1, 100000);
 }
 
-double Frames::run(Subject& subject, int frames) {
+double Frames::run(Subject& subject, int frames, bool untimed_first) {
     frames_ = steps_.empty() ? std::max(frames, 1) : static_cast<int>(steps_.size());
     pairs_.clear();
     ended_.clear();
+    int first = 0;
+    if (!steps_.empty()) run_once(subject, &steps_[static_cast<size_t>(first++)]);
+    else if (untimed_first) run_once(subject, nullptr);
     double start = thread_ns();
-    for (int i = 0; i < frames_; ++i) run_once(subject, steps_.empty() ? nullptr : &steps_[static_cast<size_t>(i)]);
-    return (thread_ns() - start) / frames_;
+    for (int i = first; i < frames_; ++i) run_once(subject, steps_.empty() ? nullptr : &steps_[static_cast<size_t>(i)]);
+    return (thread_ns() - start) / (frames_ - first);
 }
 
 // Refit frames add to the lists, which are compared as a whole; the frames of the other modes are all the same.

@@ -42,8 +42,9 @@ public:
     // Makes what the next sample works on: for refit frames the boxes move on.
     void next_sample();
     // Runs the frames of a sample and gives the time of one on this thread, ns. `frames` of 0 asks for as many as the
-    // cell wants.
-    double run(Subject& subject, int frames = 0);
+    // cell wants. One before them, if asked for and of refit frames always the first, is not timed: it finds in the
+    // caches what other subjects left there.
+    double run(Subject& subject, int frames = 0, bool untimed_first = false);
     // How many frames at least of one subject make a sample that the clock can measure, if one takes `frame_ns`.
     int frames_for(double frame_ns) const;
 
