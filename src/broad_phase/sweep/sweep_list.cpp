@@ -56,8 +56,16 @@ void SweepList::assign(const BroadBox* boxes, int count, int along) {
     for (int d = 0; d < 3; ++d) {
         for (size_t i = n; i < n + padding; ++i) low[d][i] = high[d][i] = 0;
     }
-    reach.assign((n + run - 1) / run, -infinity);
-    for (size_t i = 0; i < n; ++i) reach[i / run] = maximum(high[0][i], reach[i / run]);
+    reach.resize_unset((n + run - 1) / run);
+    for (size_t r = 0; r < reach.size(); ++r) {
+        const float* ends = high[0] + r * run;
+        const size_t left = n - r * run < run ? n - r * run : run;
+        Float4 four = splat<Float4>(-infinity);
+        for (size_t i = 0; i + 4 <= left; i += 4) four = maximum(load_wide<Float4>(ends + i), four);
+        float farthest = maximum(maximum(four[0], four[1]), maximum(four[2], four[3]));
+        for (size_t i = left & ~size_t{3}; i < left; ++i) farthest = maximum(ends[i], farthest);
+        reach[r] = farthest;
+    }
 }
 
 // Runs that cannot better the best hit, by their extent on the axis alone, are passed over.
