@@ -44,8 +44,8 @@ void sort_by_rank(Array<uint64_t>& keys) {
     for (size_t i = 0; i < n; ++i) keys[rank[i]] = old[i];
 }
 
-// Keys that are spread evenly, by their highest bits that differ into about as many buckets as keys and each to its
-// place from there. False where too many share a bucket; nothing has changed then.
+// Keys that are spread evenly, by their highest bits that differ into a few times as many buckets as keys and each to
+// its place from there. False where too many share a bucket; nothing has changed then.
 bool sort_by_buckets(Array<uint64_t>& keys, Array<uint64_t>& swap) {
     constexpr int most_bits = 12, most_together = 24;
     uint64_t low = keys[0], high = keys[0];
@@ -53,7 +53,7 @@ bool sort_by_buckets(Array<uint64_t>& keys, Array<uint64_t>& swap) {
         low = key < low ? key : low;
         high = key > high ? key : high;
     }
-    const int bits = std::min(most_bits, 63 - __builtin_clzll(keys.size()));
+    const int bits = std::min(most_bits, 65 - __builtin_clzll(keys.size()));
     const int span = high > low ? 64 - __builtin_clzll(high - low) : 1;
     const int shift = span > bits ? span - bits : 0;
     uint32_t place[1 << most_bits];

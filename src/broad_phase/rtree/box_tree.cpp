@@ -1,5 +1,6 @@
 #include "broad_phase/rtree/box_tree.h"
 
+#include "broad_phase/block_fill.h"
 #include "broad_phase/rtree/leaf.h"
 
 namespace lendulet {

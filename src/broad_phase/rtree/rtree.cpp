@@ -155,7 +155,7 @@ void RTree<policy>::build(const BroadBox* boxes, int count, TaskPool*) {
     leaf_.resize_unset(n);
     packed_ = count <= few_boxes;
     if (packed_) {
-        if (!pack_bounded(boxes, count)) pack(boxes, count);
+        pack(boxes, count);
     } else if constexpr (policy == RtreePolicy::str) {
         pack_tiles(boxes, count);
     } else {
@@ -163,26 +163,23 @@ void RTree<policy>::build(const BroadBox* boxes, int count, TaskPool*) {
     }
 }
 
-// A few boxes: leaves in the caller's order under the root. False, and nothing done, where some are unbounded.
+// A few boxes: leaves in the caller's order under the root.
 template <RtreePolicy policy>
-bool RTree<policy>::pack_bounded(const BroadBox* boxes, int count) {
-    const Ref first_leaf = root_ + 1;
-    for (int first = 0; first < count; first += block_size) {
-        const int n = count - first < block_size ? count - first : block_size;
+void RTree<policy>::pack(const BroadBox* boxes, int count) {
+    uint32_t places[few_boxes];  // of the bounded ones
+    int bounded_count = 0;
+    for (int i = 0; i < count; ++i) {
+        const uint32_t place = static_cast<uint32_t>(i);
+        if (bounded(boxes[i])) places[bounded_count++] = place;
+        else insert_box(boxes[i], place);
+    }
+    for (int first = 0, lane = 0; first < bounded_count; first += block_size, ++lane) {
+        const int left = bounded_count - first, n = left < block_size ? left : block_size;
         const Ref leaf = new_node(0);
-        const int lane = static_cast<int>(leaf - first_leaf);
         Links &links = links_[leaf], &above = links_[root_];
-        for (int k = 0; k < block_size; ++k) links.child[k] = k < n ? static_cast<uint32_t>(first + k) : no_box;
+        for (int k = 0; k < block_size; ++k) links.child[k] = k < n ? places[first + k] : no_box;
         const LeafBounds bounds = fill_leaf(blocks_[leaf], links.index, boxes, links.child);
-        if (!bounds.finite()) {
-            blocks_.resize_unset(first_leaf);
-            links_.resize_unset(first_leaf);
-            nodes_.resize_unset(first_leaf);
-            clear_lanes(blocks_[root_]);
-            nodes_[root_].count = 0;
-            return false;
-        }
-        for (int k = 0; k < n; ++k) leaf_[first + k] = leaf;
+        for (int k = 0; k < n; ++k) leaf_[links.child[k]] = leaf;
         for (int d = 0; d < 3; ++d) {
             blocks_[root_].lower[d][lane] = bounds.lower[d];
             blocks_[root_].upper[d][lane] = bounds.upper[d];
@@ -192,26 +189,6 @@ bool RTree<policy>::pack_bounded(const BroadBox* boxes, int count) {
         nodes_[leaf] = {root_, 0, static_cast<uint16_t>(n)};
         nodes_[root_].count = static_cast<uint16_t>(lane + 1);
     }
-    return true;
-}
-
-// The bounded ones in the same way, the others in their list.
-template <RtreePolicy policy>
-void RTree<policy>::pack(const BroadBox* boxes, int count) {
-    Ref leaf = no_box;
-    for (int i = 0; i < count; ++i) {
-        uint32_t place = static_cast<uint32_t>(i);
-        if (!bounded(boxes[i])) {
-            insert_box(boxes[i], place);
-            continue;
-        }
-        if (leaf == no_box || nodes_[leaf].count == block_size) {
-            if (leaf != no_box) put_at_end(root_, entry_of(leaf));
-            leaf = new_node(0);
-        }
-        put_at_end(leaf, entry_for(boxes[i], place));
-    }
-    if (leaf != no_box) put_at_end(root_, entry_of(leaf));
 }
 
 template <RtreePolicy policy>

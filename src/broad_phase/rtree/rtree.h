@@ -89,7 +89,6 @@ private:
     Ref new_node(int level);
     void clear();
     void pack(const BroadBox* boxes, int count);
-    bool pack_bounded(const BroadBox* boxes, int count);
     void pack_tiles(const BroadBox* boxes, int count);
     void put_at_end(Ref node, const RtreeEntry& entry);
     RtreeEntry entry_of(Ref node) const;

@@ -69,6 +69,12 @@ void between_groups(const Tree& tree, typename Tree::Ref group, const WideBox& b
     }
 }
 
+void pairs_of_leaves(const ScannedBoxes& moving, const ScannedBoxes& fixed, Array<BoxPair>& out) {
+    PairList list(out, true);
+    PairRoom room(list);
+    all_pairs_scan()(moving, fixed, 0, moving.count, room);
+}
+
 }  // namespace
 
 template <class Tree>
@@ -86,10 +92,7 @@ void TwoTrees<Tree>::set_moving(const BroadBox* boxes, int count, TaskPool* task
 template <class Tree>
 void TwoTrees<Tree>::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
     if (moving_.is_few() && fixed_.is_few()) {
-        const ScannedBoxes leaves = moving_.leaves();
-        PairList list(out, true);
-        PairRoom room(list);
-        all_pairs_scan()(leaves, fixed_.leaves(), 0, leaves.count, room);
+        pairs_of_leaves(moving_.leaves(), fixed_.leaves(), out);
     } else {
         find_pairs_by_groups(tasks, out);
     }

@@ -38,16 +38,19 @@ void deal_into_drawers(Array<uint64_t>& keys, Array<uint64_t>& swap) {
 
 }  // namespace
 
-namespace {
-
-// How many of n keys come before each; `vectors` fours of them. Each is compared with each, and no branch depends on
-// the keys: those of the same coordinate count if their place is smaller.
-template <size_t vectors>
-void count_smaller(const int32_t* at, size_t n, int32_t* smaller) {
+// Each is compared with each, four at a time, and goes where the number of smaller ones says: those of the same
+// coordinate count if their place is smaller. No branch depends on the keys.
+void IntervalOrder::sort_handful() {
     using Int4 = Wide<int32_t, 4>;
+    constexpr size_t vectors = handful / 4;
+    const size_t n = keys_.size();
+    if (n < 2) return;
+    alignas(16) int32_t at[handful], smaller[handful];  // signed integers of the order of the coordinates
+    for (size_t i = 0; i < n; ++i) at[i] = static_cast<int32_t>((keys_[i] >> 32) ^ 0x80000000u);
+    for (size_t i = n; i < handful; ++i) at[i] = 0;
     // From where it is read for key j: -1 in the lanes behind it. There equal ones count: what is above other - 1.
-    static constexpr int32_t behind[32] = {0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,
-                                           -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+    static constexpr int32_t behind[2 * handful] = {0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,
+                                                    -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
     auto load = [](const int32_t* p) {
         Int4 x;
         std::memcpy(&x, p, sizeof x);
@@ -57,24 +60,9 @@ void count_smaller(const int32_t* at, size_t n, int32_t* smaller) {
     for (size_t v = 0; v < vectors; ++v) mine[v] = load(at + 4 * v);
     for (size_t j = 0; j < n; ++j) {
         const Int4 other = Int4{} + at[j];
-        for (size_t v = 0; v < vectors; ++v) count[v] -= mine[v] > other + load(behind + 15 - j + 4 * v);
+        for (size_t v = 0; v < vectors; ++v) count[v] -= mine[v] > other + load(behind + handful - 1 - j + 4 * v);
     }
     for (size_t v = 0; v < vectors; ++v) std::memcpy(smaller + 4 * v, &count[v], sizeof count[v]);
-}
-
-}  // namespace
-
-// Each goes where the number of smaller ones says.
-void IntervalOrder::sort_handful() {
-    static_assert(handful == 16);
-    const size_t n = keys_.size();
-    if (n < 2) return;
-    alignas(16) int32_t at[handful], smaller[handful];  // signed integers of the order of the coordinates
-    for (size_t i = 0; i < n; ++i) at[i] = static_cast<int32_t>((keys_[i] >> 32) ^ 0x80000000u);
-    for (size_t i = n; i < handful; ++i) at[i] = 0;
-    n <= 8    ? count_smaller<2>(at, n, smaller)
-    : n <= 12 ? count_smaller<3>(at, n, smaller)
-              : count_smaller<4>(at, n, smaller);
     swap_.resize_unset(n);
     for (size_t i = 0; i < n; ++i) swap_[static_cast<size_t>(smaller[i])] = keys_[i];
     keys_.swap(swap_);

@@ -45,8 +45,8 @@ struct alignas(64) WideTreeChange {
     BroadBox before, after;  // of the same index
 };
 
-// The boxes of the moving set that change between two frames, sorted by their lanes. While they are searched, the
-// steps of their lanes are those of the box around before and after, and all bounds above hold both.
+// Boxes of the moving set that change between two frames, one batch, sorted by their lanes. While they are searched,
+// the steps of their lanes are those of the box around before and after, and all bounds above hold both.
 struct WideTreeChanges {
     const uint64_t* changed = nullptr;     // of each group, the lanes that change
     const uint32_t* first = nullptr;       // of each group with such lanes, where its rows begin

@@ -1,8 +1,7 @@
 // The wide tree between frames. What changes goes three ways:
 // - boxes that moved a little keep their lanes; batch after batch, in the order of the groups, they are searched with
 //   their boxes of before and after, among those that have changed already and those that have not yet;
-// - then single boxes that jumped, came or went are taken out of this state and put into the new one, each with a
-// query;
+// - single boxes that jumped, came or went are then taken out of this state and put into the new one, each by a query;
 // - if most did, all pairs of this state and of a newly built tree are compared.
 // What each step begins and ends adds up to what the frame does: it is counted pair by pair when the lists are sorted.
 #include <algorithm>
