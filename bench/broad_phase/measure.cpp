@@ -10,6 +10,7 @@ namespace {
 constexpr double longest_frame_s = 10.0;
 // A subject gives samples until all have been taken or it has cost this much, but at least three; slow ones give one.
 constexpr double budget_s = 1.0, slow_s = 1.0;
+constexpr double longest_untimed_ns = 2e8;
 constexpr double longest_cold_ns = 1e6;  // of a first frame that may tell little of the others
 
 double now_s() { return 1e-9 * thread_ns(); }
@@ -55,6 +56,7 @@ struct Bench::Entrant {
     const SubjectType* type;
     std::unique_ptr<Subject> subject;
     int frames = 1;
+    double frame_ns = 0.0;  // about
     std::vector<double> samples;
     double cost_s = 0.0;
     bool done = false;
@@ -101,7 +103,7 @@ CellResult Bench::measure(const Cell& cell) {
         for (Entrant& e : entrants) {
             if (e.done) continue;
             double start = now_s();
-            e.samples.push_back(frames.run(*e.subject, e.frames));
+            e.samples.push_back(frames.run(*e.subject, e.frames, e.frame_ns < longest_untimed_ns));
             e.cost_s += now_s() - start;
             if (e.cost_s > budget_s && e.samples.size() >= 3) e.done = true;
             agreement.compare(e.type->name, frames.found());
@@ -121,7 +123,7 @@ std::vector<Bench::Entrant> Bench::enter(const Cell& cell, CellResult& result) {
         if (expected > longest_frame_s) {
             result.skipped.push_back(type.name + " is left out: it would take about " + seconds_text(expected));
         } else {
-            entrants.push_back({&type, type.make(), 1, {}, 0.0, false});
+            entrants.push_back({&type, type.make(), 1, 0.0, {}, 0.0, false});
         }
     }
     return entrants;
@@ -144,6 +146,7 @@ void Bench::warm_up(std::vector<Entrant>& entrants, Frames& frames, Agreement& a
         const bool repeatable = result.cell.mode != Mode::refit;
         if (repeatable && frame_ns < longest_cold_ns) frame_ns = frames.run(*e.subject, frames.frames_for(frame_ns));
         e.frames = frames.frames_for(frame_ns);
+        e.frame_ns = frame_ns;
         if (e.done) e.samples.push_back(frame_ns);
     }
 }

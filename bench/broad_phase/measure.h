@@ -39,11 +39,13 @@ public:
 
     // Brings a fresh subject to where frames can be run; not timed as part of a frame.
     void prepare(Subject& subject) const;
-    // Makes what the next sample works on: for refit frames the boxes move on.
+    // Makes what the next sample works on: for refit frames the boxes move on. Each begins, as its caller's would, by
+    // writing the boxes that have moved into the array.
     void next_sample();
     // Runs the frames of a sample and gives the time of one on this thread, ns. `frames` of 0 asks for as many as the
-    // cell wants.
-    double run(Subject& subject, int frames = 0);
+    // cell wants. One before them, if asked for and of refit frames always the first, is not timed: it finds in the
+    // caches what other subjects left there.
+    double run(Subject& subject, int frames = 0, bool untimed_first = false);
     // How many frames at least of one subject make a sample that the clock can measure, if one takes `frame_ns`.
     int frames_for(double frame_ns) const;
 
@@ -58,13 +60,14 @@ public:
 
 private:
     struct Step {
-        Boxes boxes;
         std::vector<uint32_t> changed;
+        Boxes boxes;  // as they then are
     };
     void run_once(Subject& subject, const Step* step);
 
     Cell cell_;
     Boxes fixed_, moving_, queries_;
+    Boxes start_, now_;  // refit only: before the frames of a sample, and while they run
     Motion motion_;
     std::vector<Step> steps_;  // refit only
     int frames_ = 1;

@@ -7,13 +7,12 @@ namespace {
 
 class Ours final : public Subject {
 public:
-    explicit Ours(BroadPhaseType type) : broad_phase_(type, nullptr) {}
+    explicit Ours(BroadPhaseType type) : broad_phase_(type, nullptr), remembers_(remembers(type)) {}
 
-    // Emptied first: a structure that knows its boxes again would only refit.
     void load(const Boxes& fixed, const Boxes& moving) override {
-        broad_phase_.set_moving(nullptr, 0);
+        if (remembers_) broad_phase_.set_moving(nullptr, 0);
         if (has_fixed_ || !fixed.empty()) {
-            broad_phase_.set_fixed(nullptr, 0);
+            if (remembers_) broad_phase_.set_fixed(nullptr, 0);
             broad_phase_.set_fixed(fixed.data(), static_cast<int>(fixed.size()));
             has_fixed_ = !fixed.empty();
         }
@@ -37,8 +36,15 @@ public:
     }
 
 private:
+    // The sweeps keep their order and rtree-omt refits where boxes are set that it may know again: to start from
+    // nothing they are emptied first. The others build whatever they had.
+    static bool remembers(BroadPhaseType type) {
+        return type == BroadPhaseType::sweep_1 || type == BroadPhaseType::sweep_3 || type == BroadPhaseType::rtree_omt;
+    }
+
     TaskPool tasks_{1};
     BroadPhase broad_phase_;
+    bool remembers_;
     bool has_fixed_ = false;
     std::vector<BoxQuery> batch_;
     Array<uint32_t> offsets_;

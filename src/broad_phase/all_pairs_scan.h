@@ -1,4 +1,5 @@
-// The loop of AllPairs, compiled once per instruction set. Every width writes the same pairs in the same order.
+// The loop of AllPairs and of small trees, compiled once per instruction set. Every width writes the same pairs in the
+// same order.
 #pragma once
 
 #include "broad_phase/block.h"
@@ -6,14 +7,15 @@
 
 namespace lendulet {
 
-// A BoxSet as the loop sees it.
+// A set of boxes in blocks as the loop sees it.
 struct ScannedBoxes {
     const BoxBlock* blocks;
-    const uint32_t* index;
-    int count;
+    const uint32_t* index;        // of the boxes of the first block
+    int count;                    // lanes; those without a box among them only if no box is infinite
+    int index_step = block_size;  // from the indices of one block to those of the next
 };
 
-// Pairs of the boxes [begin, end) of `moving` with those after each and with all of `fixed`.
+// Pairs of the boxes [begin, end) of `moving` with those before each and with all of `fixed`.
 using AllPairsScan = void (*)(const ScannedBoxes& moving, const ScannedBoxes& fixed, int begin, int end,
                               PairStream& out);
 

@@ -23,37 +23,42 @@ LENDULET_FORCE_INLINE uint32_t overlapping(const BoxBlock& block, int first, con
     return lane_bits<F>(hit);
 }
 
-// Pairs of a box with those of a set from place `first` on.
+// Pairs of a box with the first `lanes` of a set.
 template <class F>
-LENDULET_FORCE_INLINE void pairs_from(const ScannedBoxes& set, const Spread<F>& box, uint32_t box_index, int first,
+LENDULET_FORCE_INLINE void pairs_with(const ScannedBoxes& set, int lanes, const Spread<F>& box, uint32_t own,
                                       PairStream& out) {
-    constexpr int width = lanes_of<F>;
-    uint32_t skipped = (1u << first % width) - 1;
-    for (int i = first / width * width; i < set.count; i += width, skipped = 0) {
-        uint32_t hits = overlapping<F>(set.blocks[i / block_size], i % block_size, box) & ~skipped;
+    const BoxBlock* block = set.blocks;
+    const uint32_t* index = set.index;
+    for (; lanes > 0; lanes -= block_size, ++block, index += set.index_step) {
+        uint32_t hits = overlapping<F>(*block, 0, box);
+        if (lanes_of<F> < block_size && lanes > lanes_of<F>)
+            hits |= overlapping<F>(*block, lanes_of<F>, box) << lanes_of<F>;
+        hits &= ~(~0u << (lanes < block_size ? lanes : block_size));
         if (hits == 0) continue;
-        if (set.count - i < width) hits &= (1u << (set.count - i)) - 1;  // infinite boxes overlap empty lanes
-        if (out.end - out.next < width) out.full(out);
+        if (out.end - out.next < block_size) out.full(out);
         BoxPair* next = out.next;
-        while (hits) {
-            const uint32_t other = set.index[i + take_bit(hits)];
-            *next++ = box_index < other ? BoxPair{box_index, other} : BoxPair{other, box_index};
-        }
+        do {
+            const uint32_t other = index[take_bit(hits)];
+            *next++ = own < other ? BoxPair{own, other} : BoxPair{other, own};
+        } while (hits);
         out.next = next;
     }
 }
 
+// Those before a box and not those after it: the first boxes of a block need none of the blocks behind.
 template <class F>
 void scan_all_pairs(const ScannedBoxes& moving, const ScannedBoxes& fixed, int begin, int end, PairStream& out) {
     for (int i = begin; i < end; ++i) {
-        const BoxBlock& block = moving.blocks[i / block_size];
+        const int b = static_cast<int>(static_cast<unsigned>(i) / block_size), lane = i - b * block_size;
+        const BoxBlock& block = moving.blocks[b];
         Spread<F> box;
         for (int d = 0; d < 3; ++d) {
-            box.lower[d] = splat<F>(block.lower[d][i % block_size]);
-            box.upper[d] = splat<F>(block.upper[d][i % block_size]);
+            box.lower[d] = repeat<F>(block.lower[d][lane]);
+            box.upper[d] = repeat<F>(block.upper[d][lane]);
         }
-        pairs_from(moving, box, moving.index[i], i + 1, out);
-        pairs_from(fixed, box, moving.index[i], 0, out);
+        const uint32_t own = moving.index[b * moving.index_step + lane];
+        pairs_with(moving, i, box, own, out);
+        pairs_with(fixed, fixed.count, box, own, out);
     }
 }
 

@@ -28,8 +28,8 @@ struct WideBox {
 LENDULET_FORCE_INLINE WideBox spread(const float lower[3], const float upper[3]) {
     WideBox box;
     for (int d = 0; d < 3; ++d) {
-        box.lower[d] = splat<Float4>(lower[d]);
-        box.upper[d] = splat<Float4>(upper[d]);
+        box.lower[d] = repeat<Float4>(lower[d]);
+        box.upper[d] = repeat<Float4>(upper[d]);
     }
     return box;
 }
@@ -37,8 +37,8 @@ LENDULET_FORCE_INLINE WideBox spread(const float lower[3], const float upper[3])
 LENDULET_FORCE_INLINE WideBox spread_lane(const BoxBlock& block, int lane) {
     WideBox box;
     for (int d = 0; d < 3; ++d) {
-        box.lower[d] = splat<Float4>(block.lower[d][lane]);
-        box.upper[d] = splat<Float4>(block.upper[d][lane]);
+        box.lower[d] = repeat<Float4>(block.lower[d][lane]);
+        box.upper[d] = repeat<Float4>(block.upper[d][lane]);
     }
     return box;
 }

@@ -1,31 +1,27 @@
 #include "broad_phase/box_set.h"
 
-#include "math/wide/gather.h"
+#include "broad_phase/block_fill.h"
 
 namespace lendulet {
 
 void BoxSet::assign(const BroadBox* boxes, int count) {
-    int block_count = (count + block_size - 1) / block_size;
-    blocks.resize_unset(static_cast<size_t>(block_count));
-    index.resize_unset(static_cast<size_t>(count));
-    constexpr int row = static_cast<int>(sizeof(BroadBox) / sizeof(float));
-    int i = 0;
-    for (; i + 4 <= count; i += 4) {  // rows to lanes
-        Float4 low[4], high[4];
-        load4<4>(floats_of(boxes), i, row, 0, low);
-        load4<4>(floats_of(boxes), i, row, row / 2, high);
-        BoxBlock& block = blocks.data()[i / block_size];
-        for (int d = 0; d < 3; ++d) {
-            store_wide(block.lower[d] + i % block_size, low[d]);
-            store_wide(block.upper[d] + i % block_size, high[d]);
+    const auto lanes = (static_cast<size_t>(count) + block_size - 1) / block_size * block_size;
+    blocks.resize_unset(lanes / block_size);
+    index.resize_unset(lanes);
+    BoxBlock* block = blocks.data();
+    uint32_t* next_index = index.data();
+    for (int left = count; left > 0; left -= block_size, ++block) {
+        for (int half = 0; half < block_size; half += 4, boxes += 4, next_index += 4) {
+            Float4 low[4], high[4];
+            for (int i = 0; i < 4; ++i) {
+                const BroadBox& box = half + i < left ? boxes[i] : empty_box;
+                low[i] = load_wide<Float4>(box.lower);
+                high[i] = load_wide<Float4>(box.upper);
+            }
+            store_quad(*block, half, next_index, low, high);
         }
-        std::memcpy(index.data() + i, &low[3], sizeof low[3]);  // the word behind `lower` is the index
     }
-    for (; i < count; ++i) {
-        set_lane(blocks[i / block_size], i % block_size, boxes[i].lower, boxes[i].upper);
-        index[i] = boxes[i].index;
-    }
-    for (; i < block_count * block_size; ++i) clear_lane(blocks[i / block_size], i % block_size);
+    index.resize_unset(static_cast<size_t>(count));
 }
 
 void BoxSet::append_boxes(Array<BroadPhaseBox>& out) const {

@@ -72,8 +72,7 @@ public:
         } else {
             all_pairs(structure, tasks, after_);
         }
-        append_missing(after_, before_, begun);
-        append_missing(before_, after_, ended);
+        append_differences(after_, before_, begun, ended);
         known_ = !few;
         if (known_) before_.swap(after_);
     }

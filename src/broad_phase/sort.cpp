@@ -44,8 +44,8 @@ void sort_by_rank(Array<uint64_t>& keys) {
     for (size_t i = 0; i < n; ++i) keys[rank[i]] = old[i];
 }
 
-// Keys that are spread evenly, by their highest bits that differ into about as many buckets as keys and each to its
-// place from there. False where too many share a bucket; nothing has changed then.
+// Keys that are spread evenly, by their highest bits that differ into a few times as many buckets as keys and each to
+// its place from there. False where too many share a bucket; nothing has changed then.
 bool sort_by_buckets(Array<uint64_t>& keys, Array<uint64_t>& swap) {
     constexpr int most_bits = 12, most_together = 24;
     uint64_t low = keys[0], high = keys[0];
@@ -53,11 +53,12 @@ bool sort_by_buckets(Array<uint64_t>& keys, Array<uint64_t>& swap) {
         low = key < low ? key : low;
         high = key > high ? key : high;
     }
-    const int bits = std::min(most_bits, 63 - __builtin_clzll(keys.size()));
+    const int bits = std::min(most_bits, 65 - __builtin_clzll(keys.size()));
     const int span = high > low ? 64 - __builtin_clzll(high - low) : 1;
     const int shift = span > bits ? span - bits : 0;
-    uint32_t place[1 << most_bits] = {};
+    uint32_t place[1 << most_bits];
     const size_t buckets = static_cast<size_t>((high - low) >> shift) + 1;
+    std::memset(place, 0, buckets * sizeof place[0]);
     for (uint64_t key : keys) ++place[(key - low) >> shift];
     uint32_t begin = 0, most = 0;
     for (size_t b = 0; b < buckets; ++b) {
@@ -94,13 +95,29 @@ void sort_keys(Array<uint64_t>& keys, Array<uint64_t>& swap, int first_bit) {
                                         : sort_by_digits<11>(keys, swap, first_bit);
 }
 
-void append_missing(const Array<uint64_t>& from, const Array<uint64_t>& in, Array<BoxPair>& out) {
-    size_t next = 0;
-    for (uint64_t key : from) {
-        while (next < in.size() && in[next] < key) ++next;
-        if (next < in.size() && in[next] == key) continue;
-        out.push_back({static_cast<uint32_t>(key >> 32), static_cast<uint32_t>(key)});
+// Which of two keys comes first cannot be foreseen: both are written, and what was to be written stays.
+void append_differences(const Array<uint64_t>& a, const Array<uint64_t>& b, Array<BoxPair>& only_in_a,
+                        Array<BoxPair>& only_in_b) {
+    auto pair_of = [](uint64_t key) { return BoxPair{static_cast<uint32_t>(key >> 32), static_cast<uint32_t>(key)}; };
+    auto room = [](Array<BoxPair>& out, size_t more) {
+        out.reserve(out.size() + more);
+        return out.data() + out.size();
+    };
+    BoxPair *next_a = room(only_in_a, a.size()), *next_b = room(only_in_b, b.size());
+    size_t i = 0, j = 0;
+    while (i < a.size() && j < b.size()) {
+        const uint64_t of_a = a[i], of_b = b[j];
+        *next_a = pair_of(of_a);
+        *next_b = pair_of(of_b);
+        next_a += of_a < of_b;
+        next_b += of_b < of_a;
+        i += of_a <= of_b;
+        j += of_b <= of_a;
     }
+    for (; i < a.size(); ++i) *next_a++ = pair_of(a[i]);
+    for (; j < b.size(); ++j) *next_b++ = pair_of(b[j]);
+    only_in_a.resize_unset(static_cast<size_t>(next_a - only_in_a.data()));
+    only_in_b.resize_unset(static_cast<size_t>(next_b - only_in_b.data()));
 }
 
 }  // namespace lendulet

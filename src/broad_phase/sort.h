@@ -29,7 +29,9 @@ inline float float_of(uint32_t ordered) {
 // whose memory may have changed hands with that of `swap`.
 void sort_keys(Array<uint64_t>& keys, Array<uint64_t>& swap, int first_bit = 0);
 
-// Appends the pairs whose keys a << 32 | b stand in one sorted list and not in the other; each is in a list once.
-void append_missing(const Array<uint64_t>& from, const Array<uint64_t>& in, Array<BoxPair>& out);
+// Appends the pairs whose keys a << 32 | b stand in one of two sorted lists and not in the other. One that stands in a
+// list several times counts as often, less the times it stands in the other.
+void append_differences(const Array<uint64_t>& a, const Array<uint64_t>& b, Array<BoxPair>& only_in_a,
+                        Array<BoxPair>& only_in_b);
 
 }  // namespace lendulet

@@ -93,6 +93,37 @@ public:
     WideTree tree;
 };
 
+// Boxes of many batches move while others jump into them, come, go and change their indices: what the steps of a frame
+// begin and end one after the other adds up to the frame, however many workers there are and whether it is built anew.
+TEST(WideTreeTest, StepsOfAFrameAddUp) {
+    for (int workers : {1, 3}) {
+        for (int jumps_of_100 : {2, 60}) {
+            const Boxes fixed = make_boxes("uniform", 300, 7, 100000);
+            Scene scene(fixed, make_boxes("uniform", 1500, 8), 0, workers);
+            Random random(9);
+            uint32_t next_index = 5000;
+            for (int frame = 0; frame < 12; ++frame) {
+                for (BroadBox& box : scene.boxes) {
+                    const int chance = random.below(100);
+                    if (chance < 40) move_by(box, random, 0.5f);
+                    if (chance >= 100 - jumps_of_100) move_by(box, random, 12.0f);
+                    if (chance == 50) box.index = next_index++;
+                }
+                std::swap(scene.boxes[3], scene.boxes[700]);
+                const bool grows = frame % 3 == 1;
+                if (grows) scene.boxes.insert(scene.boxes.end(), 20, BroadBox{});
+                else scene.boxes.resize(scene.boxes.size() - 20);
+                for (size_t i = scene.boxes.size() - 20; grows && i < scene.boxes.size(); ++i) {
+                    scene.boxes[i] = scene.boxes[i - 600];
+                    move_by(scene.boxes[i], random, 0.5f);
+                    scene.boxes[i].index = next_index++;
+                }
+                scene.update_and_compare("workers " + std::to_string(workers) + ", frame " + std::to_string(frame));
+            }
+        }
+    }
+}
+
 TEST(WideTreeTest, WidthsWriteTheSameLists) {
     for (const std::string& kind : distributions) {
         for (int n : {5, 100, 700}) {

@@ -1,60 +1,18 @@
 #include "broad_phase/rtree/box_tree.h"
 
-#include "math/wide/gather.h"
+#include "broad_phase/block_fill.h"
+#include "broad_phase/rtree/leaf.h"
 
 namespace lendulet {
 
 namespace {
 
-// Below this a set is not cut at all: its few leaves are tested against each other faster than they could be improved.
-constexpr int smallest_cut = 32;
 // The tree is built anew after this many refits, or once its leaves have grown by this factor. A build costs about a
 // third of a search for pairs.
 constexpr int most_refits = 64;
 constexpr float most_growth = 1.15f;
 // Work is cut into tasks of about this many boxes.
 constexpr int boxes_per_task = 2048;
-
-struct Bounds {
-    Float4 lower, upper;  // x, y, z and a lane of no meaning
-
-    void include(Float4 low, Float4 high) {
-        lower = minimum(low, lower);
-        upper = maximum(high, upper);
-    }
-    // Sum of the edge lengths.
-    float size() const { return (upper[0] - lower[0]) + (upper[1] - lower[1]) + (upper[2] - lower[2]); }
-    // A box with an infinite side shows in the bounds of its leaf, whichever side it is.
-    bool finite() const {
-        bool yes = true;
-        for (int d = 0; d < 3; ++d) yes &= lower[d] >= -FLT_MAX && upper[d] <= FLT_MAX;
-        return yes;
-    }
-};
-
-constexpr BroadBox empty_box{{infinity, infinity, infinity}, no_box, {-infinity, -infinity, -infinity}, 0};
-
-// Reads the boxes of a leaf from the caller's array, transposes them into the leaf and returns their bounds.
-Bounds fill_leaf(BoxBlock& leaf, uint32_t index[block_size], const BroadBox* boxes, const uint32_t slot[block_size]) {
-    Bounds bounds{splat<Float4>(infinity), splat<Float4>(-infinity)};
-    for (int half = 0; half < block_size; half += 4) {
-        Float4 low[4], high[4];
-        for (int i = 0; i < 4; ++i) {
-            const BroadBox* box = slot[half + i] == no_box ? &empty_box : boxes + slot[half + i];
-            low[i] = load_wide<Float4>(box->lower);
-            high[i] = load_wide<Float4>(box->upper);
-            bounds.include(low[i], high[i]);
-        }
-        detail::transpose4(low[0], low[1], low[2], low[3]);
-        detail::transpose4(high[0], high[1], high[2], high[3]);
-        for (int d = 0; d < 3; ++d) {
-            store_wide(leaf.lower[d] + half, low[d]);
-            store_wide(leaf.upper[d] + half, high[d]);
-        }
-        std::memcpy(index + half, &low[3], sizeof low[3]);  // the word behind `lower` is the index
-    }
-    return bounds;
-}
 
 }  // namespace
 
@@ -77,12 +35,24 @@ void BoxTree::build(const BroadBox* boxes, int count, TaskPool* tasks) {
     refits_ = 0;
     ++builds_;
     lanes_known_ = false;
+    if (count <= smallest_cut && build_uncut(boxes, count, tasks)) return;
     collect(boxes, count);
     if (count_bounded() == 0) return;
     plan_levels();
     if (tasks && tasks->workers() > 1 && count_bounded() > 2 * boxes_per_task) arrange_in_parallel(*tasks);
     else arrange(0, 0, 0, count_bounded());
     fill(boxes, true, tasks);
+}
+
+// Full leaves in the order of the boxes. False where some are unbounded: then they are to be collected first.
+bool BoxTree::build_uncut(const BroadBox* boxes, int count, TaskPool* tasks) {
+    unbounded_.clear();
+    unbounded_slot_.clear();
+    if (count == 0) return true;
+    plan_levels();
+    for (size_t i = 0; i < slot_.size(); ++i)
+        slot_[i] = i < static_cast<size_t>(count) ? static_cast<uint32_t>(i) : no_box;
+    return fill(boxes, true, tasks);
 }
 
 // The centres of the bounded boxes, and the list of the others.
@@ -145,9 +115,13 @@ void BoxTree::arrange(int level, int node, int begin, int count) {
         return;
     }
     int fan_out = fan_out_[level];
-    if (count_bounded() > smallest_cut) omt_divide(centres_.data() + begin, count, fan_out);
+    const bool cut = count_bounded() > smallest_cut;
+    if (cut) omt_divide(centres_.data() + begin, count, fan_out);
+    auto begin_of = [&](int k) {
+        return cut ? part_begin(count, fan_out, k) : k * block_size < count ? k * block_size : count;
+    };
     for (int k = 0; k < fan_out; ++k) {
-        int from = part_begin(count, fan_out, k), to = part_begin(count, fan_out, k + 1);
+        int from = begin_of(k), to = begin_of(k + 1);
         arrange(level + 1, node * fan_out + k, begin + from, to - from);
     }
 }
@@ -224,7 +198,8 @@ float BoxTree::fill_group(const BroadBox* boxes, int group, bool building) {
     for (int k = 0; k < fan_out; ++k) {
         int leaf = group * fan_out + k;
         size_t place = static_cast<size_t>(leaf) * block_size;
-        Bounds bounds = fill_leaf(nodes_[first_node_[levels_ - 1] + leaf], &index_[place], boxes, &slot_[place]);
+        const LeafBounds bounds =
+            fill_leaf(nodes_[first_node_[levels_ - 1] + leaf], &index_[place], boxes, &slot_[place]);
         for (int d = 0; d < 3; ++d) {
             block.lower[d][k] = bounds.lower[d];
             block.upper[d][k] = bounds.upper[d];
@@ -293,6 +268,11 @@ BroadBox BoxTree::box(int place) const {
         if (unbounded_slot_[i] == static_cast<uint32_t>(place)) return unbounded_[i];
     }
     return empty_box;
+}
+
+ScannedBoxes BoxTree::leaves() const {
+    if (empty()) return {nullptr, nullptr, 0};
+    return {&nodes_[first_node_[levels_ - 1]], index_.data(), count_bounded()};
 }
 
 const char* BoxTree::check() const {

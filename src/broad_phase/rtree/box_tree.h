@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "base/tasks.h"
+#include "broad_phase/all_pairs_scan.h"
 #include "broad_phase/block.h"
 #include "broad_phase/box.h"
 #include "broad_phase/pair_changes.h"
@@ -75,10 +76,17 @@ public:
         visit_groups_from(group.node + 1, box, visit);
     }
 
+    // As in RTree.
+    ScannedBoxes leaves() const;
+    bool is_few() const { return count_bounded() <= smallest_cut; }
+
     size_t bytes() const;
     const char* check() const;  // as BroadPhase::check
 
 private:
+    // Up to this a set is not cut at all: the leaves of one group are compared faster than they could be improved.
+    static constexpr int smallest_cut = block_size * block_size;
+
     template <class Visit>
     void visit_groups_from(int first_group, const WideBox& box, Visit&& visit) const;
     int count_bounded() const { return count_ - unbounded_.count(); }
@@ -86,6 +94,7 @@ private:
     uint32_t boxes_in_leaf(int leaf) const;  // a bit for each lane that holds one
     void collect(const BroadBox* boxes, int count);
     void plan_levels();
+    bool build_uncut(const BroadBox* boxes, int count, TaskPool* tasks);
     void arrange(int level, int node, int begin, int count);
     void arrange_in_parallel(TaskPool& tasks);
     struct Range {

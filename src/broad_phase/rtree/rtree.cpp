@@ -1,12 +1,13 @@
 #include "broad_phase/rtree/rtree.h"
 
+#include "broad_phase/rtree/leaf.h"
 #include "broad_phase/rtree/str.h"
 
 namespace lendulet {
 
 namespace {
 
-constexpr int few_boxes = 32;  // packed as they come
+constexpr int few_boxes = block_size * block_size;  // what one group holds is packed as it comes
 // A tree that is changed box by box may end up with more overlap than one that is built, so it is built anew after this
 // many changes for each box. Reinsertion keeps an R*-tree good by itself; what tiles do better than insertion is lost
 // soonest.
@@ -152,7 +153,8 @@ void RTree<policy>::build(const BroadBox* boxes, int count, TaskPool*) {
     links_.reserve(most_nodes);
     nodes_.reserve(most_nodes);
     leaf_.resize_unset(n);
-    if (count <= few_boxes) {
+    packed_ = count <= few_boxes;
+    if (packed_) {
         pack(boxes, count);
     } else if constexpr (policy == RtreePolicy::str) {
         pack_tiles(boxes, count);
@@ -164,20 +166,29 @@ void RTree<policy>::build(const BroadBox* boxes, int count, TaskPool*) {
 // A few boxes: leaves in the caller's order under the root.
 template <RtreePolicy policy>
 void RTree<policy>::pack(const BroadBox* boxes, int count) {
-    Ref leaf = no_box;
+    uint32_t places[few_boxes];  // of the bounded ones
+    int bounded_count = 0;
     for (int i = 0; i < count; ++i) {
-        uint32_t place = static_cast<uint32_t>(i);
-        if (!bounded(boxes[i])) {
-            insert_box(boxes[i], place);
-            continue;
-        }
-        if (leaf == no_box || nodes_[leaf].count == block_size) {
-            if (leaf != no_box) put_at_end(root_, entry_of(leaf));
-            leaf = new_node(0);
-        }
-        put_at_end(leaf, entry_for(boxes[i], place));
+        const uint32_t place = static_cast<uint32_t>(i);
+        if (bounded(boxes[i])) places[bounded_count++] = place;
+        else insert_box(boxes[i], place);
     }
-    if (leaf != no_box) put_at_end(root_, entry_of(leaf));
+    for (int first = 0, lane = 0; first < bounded_count; first += block_size, ++lane) {
+        const int left = bounded_count - first, n = left < block_size ? left : block_size;
+        const Ref leaf = new_node(0);
+        Links &links = links_[leaf], &above = links_[root_];
+        for (int k = 0; k < block_size; ++k) links.child[k] = k < n ? places[first + k] : no_box;
+        const LeafBounds bounds = fill_leaf(blocks_[leaf], links.index, boxes, links.child);
+        for (int k = 0; k < n; ++k) leaf_[links.child[k]] = leaf;
+        for (int d = 0; d < 3; ++d) {
+            blocks_[root_].lower[d][lane] = bounds.lower[d];
+            blocks_[root_].upper[d][lane] = bounds.upper[d];
+        }
+        above.child[lane] = leaf;
+        above.index[lane] = no_box;
+        nodes_[leaf] = {root_, 0, static_cast<uint16_t>(n)};
+        nodes_[root_].count = static_cast<uint16_t>(lane + 1);
+    }
 }
 
 template <RtreePolicy policy>
@@ -423,6 +434,14 @@ WideBox RTree<policy>::bounds_of(Ref group) const {
     float lower[3], upper[3];
     block_bounds(blocks_[group], lower, upper);
     return spread(lower, upper);
+}
+
+template <RtreePolicy policy>
+ScannedBoxes RTree<policy>::leaves() const {
+    if (empty()) return {nullptr, nullptr, 0};
+    constexpr int step = sizeof(Links) / sizeof(uint32_t);
+    const Ref first = links_[root_].child[0];
+    return {&blocks_[first], links_[first].index, count_ - unbounded_.count(), step};
 }
 
 template <RtreePolicy policy>

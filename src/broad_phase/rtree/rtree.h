@@ -8,11 +8,13 @@
 // root is at level 1 at least, so that every leaf has a group above it. Bounds are exact: those of a node in its parent
 // are the union of its entries at all times. Nodes that are freed are used again.
 //
-// Up to 32 boxes are packed into leaves in their order: for so few no choice is worth its time.
+// Up to 64 boxes, which one group holds, are packed into leaves in their order: comparing them all takes less time than
+// any choice of leaves.
 #pragma once
 
 #include "base/memory.h"
 #include "base/tasks.h"
+#include "broad_phase/all_pairs_scan.h"
 #include "broad_phase/pair_changes.h"
 #include "broad_phase/rtree/omt.h"
 #include "broad_phase/rtree/search.h"
@@ -61,6 +63,11 @@ public:
     template <class Visit>
     void visit_later_groups(Ref group, const WideBox& box, Visit&& visit) const;
 
+    // The boxes of a tree that is only a few leaves side by side, of which no more is known than of any set; of no
+    // boxes where it is not.
+    ScannedBoxes leaves() const;
+    bool is_few() const { return packed_ || empty(); }
+
     size_t bytes() const;
     const char* check() const;  // as BroadPhase::check
     int levels() const { return nodes_[root_].level + 1; }
@@ -101,6 +108,7 @@ private:
     void change_box(const BroadBox& box, uint32_t place);
 
     int count_ = 0;
+    bool packed_ = false;  // its leaves follow the root and are full but for the last
     int64_t changed_ = 0;  // boxes since the tree was built
     Ref root_ = 0;
     uint32_t reinserted_levels_ = 0;  // a bit for each level that reinserted during the present insertion

@@ -69,6 +69,12 @@ void between_groups(const Tree& tree, typename Tree::Ref group, const WideBox& b
     }
 }
 
+void pairs_of_leaves(const ScannedBoxes& moving, const ScannedBoxes& fixed, Array<BoxPair>& out) {
+    PairList list(out, true);
+    PairRoom room(list);
+    all_pairs_scan()(moving, fixed, 0, moving.count, room);
+}
+
 }  // namespace
 
 template <class Tree>
@@ -85,6 +91,16 @@ void TwoTrees<Tree>::set_moving(const BroadBox* boxes, int count, TaskPool* task
 
 template <class Tree>
 void TwoTrees<Tree>::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
+    if (moving_.is_few() && fixed_.is_few()) {
+        pairs_of_leaves(moving_.leaves(), fixed_.leaves(), out);
+    } else {
+        find_pairs_by_groups(tasks, out);
+    }
+    if (moving_.unbounded().count() + fixed_.unbounded().count() > 0) pairs_of_unbounded(out);
+}
+
+template <class Tree>
+void TwoTrees<Tree>::find_pairs_by_groups(TaskPool& tasks, Array<BoxPair>& out) {
     constexpr int grain = 4;  // groups
     moving_.list_groups();
     chunks_.search(tasks, moving_.group_count(), grain, out, [&](int begin, int end, PairList& list) {
@@ -98,7 +114,6 @@ void TwoTrees<Tree>::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
                                 [&](auto other) { between_groups(moving_, group, bounds, fixed_, other, list); });
         }
     });
-    if (moving_.unbounded().count() + fixed_.unbounded().count() > 0) pairs_of_unbounded(out);
 }
 
 // Unbounded boxes are few: each is tested against the others and taken through the trees.

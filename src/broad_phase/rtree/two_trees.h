@@ -6,7 +6,8 @@
 //   rtree-star       RTree: the R*-tree of Beckmann, Kriegel, Schneider and Seeger
 //
 // Pairs are found by groups: the nodes above the leaves, of up to 64 boxes. A group is joined with itself, with the
-// groups after it that its bounds overlap, and with those of the tree of fixed boxes.
+// groups after it that its bounds overlap, and with those of the tree of fixed boxes. Where both trees are no more than
+// a few leaves in the order the boxes came in, these are compared as by AllPairs.
 #pragma once
 
 #include "base/memory.h"
@@ -50,6 +51,7 @@ public:
     const Tree& moving() const { return moving_; }
 
 private:
+    void find_pairs_by_groups(TaskPool& tasks, Array<BoxPair>& out);
     void pairs_of_unbounded(Array<BoxPair>& out) const;
 
     Tree fixed_, moving_;

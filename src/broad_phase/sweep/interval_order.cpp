@@ -8,24 +8,6 @@ namespace lendulet {
 
 namespace {
 
-// A handful of keys: each is compared with each, and goes where the number of smaller ones says. No branch depends on
-// the keys.
-constexpr size_t handful = 16;
-void sort_handful(Array<uint64_t>& keys, Array<uint64_t>& swap) {
-    size_t n = keys.size();
-    uint32_t smaller[handful] = {};
-    for (size_t i = 1; i < n; ++i) {
-        for (size_t j = 0; j < i; ++j) {
-            bool before = keys[j] < keys[i];
-            smaller[i] += before;
-            smaller[j] += !before;
-        }
-    }
-    swap.resize_unset(n);
-    for (size_t i = 0; i < n; ++i) swap[smaller[i]] = keys[i];
-    keys.swap(swap);
-}
-
 // A hundred keys are dealt to as many drawers as there are bits in a byte, by where they lie between the smallest and
 // the largest coordinate; that leaves little to repair. Does nothing where the coordinates are too far apart.
 constexpr size_t radix_pays_from = 400;
@@ -56,11 +38,40 @@ void deal_into_drawers(Array<uint64_t>& keys, Array<uint64_t>& swap) {
 
 }  // namespace
 
+// Each is compared with each, four at a time, and goes where the number of smaller ones says: those of the same
+// coordinate count if their place is smaller. No branch depends on the keys.
+void IntervalOrder::sort_handful() {
+    using Int4 = Wide<int32_t, 4>;
+    constexpr size_t vectors = handful / 4;
+    const size_t n = keys_.size();
+    if (n < 2) return;
+    alignas(16) int32_t at[handful], smaller[handful];  // signed integers of the order of the coordinates
+    for (size_t i = 0; i < n; ++i) at[i] = static_cast<int32_t>((keys_[i] >> 32) ^ 0x80000000u);
+    for (size_t i = n; i < handful; ++i) at[i] = 0;
+    // From where it is read for key j: -1 in the lanes behind it. There equal ones count: what is above other - 1.
+    static constexpr int32_t behind[2 * handful] = {0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,
+                                                    -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+    auto load = [](const int32_t* p) {
+        Int4 x;
+        std::memcpy(&x, p, sizeof x);
+        return x;
+    };
+    Int4 mine[vectors], count[vectors] = {};
+    for (size_t v = 0; v < vectors; ++v) mine[v] = load(at + 4 * v);
+    for (size_t j = 0; j < n; ++j) {
+        const Int4 other = Int4{} + at[j];
+        for (size_t v = 0; v < vectors; ++v) count[v] -= mine[v] > other + load(behind + handful - 1 - j + 4 * v);
+    }
+    for (size_t v = 0; v < vectors; ++v) std::memcpy(smaller + 4 * v, &count[v], sizeof count[v]);
+    swap_.resize_unset(n);
+    for (size_t i = 0; i < n; ++i) swap_[static_cast<size_t>(smaller[i])] = keys_[i];
+    keys_.swap(swap_);
+}
+
 void IntervalOrder::repair_or_sort() {
     size_t n = keys_.size(), descents = 0;
     for (size_t i = 1; i < n; ++i) descents += keys_[i] < keys_[i - 1];
     if (descents == 0) return;
-    if (n <= handful) return sort_handful(keys_, swap_);
     // Insertion takes time for every box passed. A sequence of which one key in eight is smaller than the one before is
     // not worth it; nor is one in which a few keys pass thousands, which is only seen while at it.
     if (descents > n / 8) {

@@ -15,6 +15,11 @@ public:
     template <class Coordinate>
     void sort(int count, Coordinate&& coordinate) {
         uint32_t n = static_cast<uint32_t>(count), old = static_cast<uint32_t>(keys_.size());
+        if (n <= handful) {
+            keys_.resize_unset(n);
+            for (uint32_t place = 0; place < n; ++place) keys_[place] = key_of(coordinate(place), place);
+            return sort_handful();
+        }
         size_t kept = 0;
         for (uint64_t key : keys_) {  // in the order of the last time
             uint32_t place = static_cast<uint32_t>(key);
@@ -34,6 +39,8 @@ public:
 
 private:
     static uint64_t key_of(float x, uint32_t place) { return uint64_t{ordered_bits(x)} << 32 | place; }
+    static constexpr uint32_t handful = 16;  // so few are sorted anew faster than their order is kept
+    void sort_handful();                     // of keys in the order of their places
     void repair_or_sort();
 
     Array<uint64_t> keys_, swap_;  // coordinate << 32 | place

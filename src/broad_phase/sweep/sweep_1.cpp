@@ -84,7 +84,8 @@ void Sweep1::set_fixed(const BroadBox* boxes, int count, TaskPool*) {
 void Sweep1::set_moving(const BroadBox* boxes, int count, TaskPool*) {
     moving_boxes_.clear();
     moving_boxes_.append(boxes, static_cast<size_t>(count));
-    axis_ = axis_of_largest_variance(boxes, count, axis_);
+    constexpr int handful = 16;  // each of them meets a vector or two of others, whichever way they are sorted
+    if (count > handful) axis_ = axis_of_largest_variance(boxes, count, axis_);
     moving_.assign(boxes, count, axis_);
     if (fixed_.axis != axis_) fixed_.assign(fixed_boxes_.data(), fixed_boxes_.count(), axis_);
     changes_.forget();

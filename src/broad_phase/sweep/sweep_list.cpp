@@ -1,6 +1,7 @@
 // The sorted boxes of a sweep and the queries that go through them.
 #include <algorithm>
 
+#include "broad_phase/block_fill.h"
 #include "broad_phase/sweep/sweep_1.h"
 
 namespace lendulet {
@@ -29,28 +30,42 @@ void SweepList::assign(const BroadBox* boxes, int count, int along) {
     size_t n = static_cast<size_t>(count);
     axis = along;
     order.sort(count, [&](uint32_t place) { return boxes[place].lower[along]; });
-    index.resize_unset(n);
+    index.resize_unset(n + padding);
     float *low[3], *high[3];
     for (int d = 0; d < 3; ++d) {
         lower[d].resize_unset(n + padding);
         upper[d].resize_unset(n + padding);
         low[d] = lower[d].data();
         high[d] = upper[d].data();
+    }
+    for (int i = 0; i < count; i += 4) {
+        Float4 four_low[4], four_high[4];
+        for (int k = 0; k < 4; ++k) {
+            const BroadBox& box = boxes[order.place(i + k < count ? i + k : count - 1)];
+            four_low[k] = load_wide<Float4>(box.lower);
+            four_high[k] = load_wide<Float4>(box.upper);
+        }
+        turn_quad(four_low, four_high);
+        for (int d = 0; d < 3; ++d) {
+            store_wide(low[column(d)] + i, four_low[d]);
+            store_wide(high[column(d)] + i, four_high[d]);
+        }
+        std::memcpy(index.data() + i, &four_low[3], sizeof four_low[3]);  // the word behind `lower` is the index
+    }
+    index.resize_unset(n);
+    for (int d = 0; d < 3; ++d) {
         for (size_t i = n; i < n + padding; ++i) low[d][i] = high[d][i] = 0;
     }
-    const int second = (along + 1) % 3, third = (along + 2) % 3;
-    for (size_t i = 0; i < n; ++i) {
-        const BroadBox& box = boxes[order.place(static_cast<int>(i))];
-        index[i] = box.index;
-        low[0][i] = box.lower[along];
-        low[1][i] = box.lower[second];
-        low[2][i] = box.lower[third];
-        high[0][i] = box.upper[along];
-        high[1][i] = box.upper[second];
-        high[2][i] = box.upper[third];
+    reach.resize_unset((n + run - 1) / run);
+    for (size_t r = 0; r < reach.size(); ++r) {
+        const float* ends = high[0] + r * run;
+        const size_t left = n - r * run < run ? n - r * run : run;
+        Float4 four = splat<Float4>(-infinity);
+        for (size_t i = 0; i + 4 <= left; i += 4) four = maximum(load_wide<Float4>(ends + i), four);
+        float farthest = maximum(maximum(four[0], four[1]), maximum(four[2], four[3]));
+        for (size_t i = left & ~size_t{3}; i < left; ++i) farthest = maximum(ends[i], farthest);
+        reach[r] = farthest;
     }
-    reach.assign((n + run - 1) / run, -infinity);
-    for (size_t i = 0; i < n; ++i) reach[i / run] = maximum(high[0][i], reach[i / run]);
 }
 
 // Runs that cannot better the best hit, by their extent on the axis alone, are passed over.

@@ -60,12 +60,31 @@ LENDULET_FORCE_INLINE Bytes16 steps_of(const CoarseBoxes& frame, const BroadBox&
     return steps_of(frame, load_wide<Quad>(box.lower), load_wide<Quad>(box.upper));
 }
 
+// The steps of a box as a word: lower x in its lowest byte, then as above.
+LENDULET_FORCE_INLINE void store_steps(CoarseBoxes& coarse, uint32_t lane, uint64_t steps) {
+    for (int k = 0; k < bound_count; ++k)
+        coarse.bounds[k][lane] = static_cast<int8_t>(steps >> 8 * (k < 3 ? k : k + 1));
+}
+
 LENDULET_FORCE_INLINE void set_steps(CoarseBoxes& coarse, uint32_t lane, const BroadBox& box) {
-    const Bytes16 steps = steps_of(coarse, box);
-    for (int d = 0; d < 3; ++d) {
-        coarse.bounds[d][lane] = steps[d];
-        coarse.bounds[3 + d][lane] = steps[4 + d];
-    }
+    using Words = Wide<uint64_t, 2>;
+    store_steps(coarse, lane, ((Words)steps_of(coarse, box))[0]);
+}
+
+// The steps of the box around two others, and of the second.
+struct StepsOfTwo {
+    uint64_t around, second;
+};
+LENDULET_FORCE_INLINE StepsOfTwo steps_of_two(const CoarseBoxes& frame, const BroadBox& a, const BroadBox& b) {
+    using Quad = Wide<float, 4>;
+    using Words = Wide<uint64_t, 2>;
+    const Quad centre = load_wide<Quad>(frame.centre), scale = load_wide<Quad>(frame.scale);
+    const Quad a_low = steps_of(load_wide<Quad>(a.lower), centre, scale),
+               a_high = steps_of(load_wide<Quad>(a.upper), centre, scale),
+               b_low = steps_of(load_wide<Quad>(b.lower), centre, scale),
+               b_high = steps_of(load_wide<Quad>(b.upper), centre, scale);
+    const Words words = (Words)to_bytes(minimum(a_low, b_low), maximum(a_high, b_high), b_low, b_high);
+    return {words[0], words[1]};
 }
 
 inline void clear_steps(CoarseBoxes& coarse, uint32_t lane) {

@@ -14,6 +14,8 @@ WideTree::WideTree(const Memory* memory, int width)
       special_(memory),
       removed_(memory),
       changes_(memory),
+      found_(memory),
+      lost_(memory),
       begun_(memory),
       ended_(memory),
       swap_(memory) {}
@@ -131,7 +133,7 @@ void WideTree::boxes(Array<BroadPhaseBox>& out) const {
 
 size_t WideTree::bytes() const {
     return moving_.bytes() + fixed_.bytes() + chunks_.bytes() + special_.bytes() + removed_.bytes() + changes_.bytes() +
-           begun_.bytes() + ended_.bytes() + swap_.bytes();
+           found_.bytes() + lost_.bytes() + begun_.bytes() + ended_.bytes() + swap_.bytes();
 }
 
 const char* WideTree::check() const {

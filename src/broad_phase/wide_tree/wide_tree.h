@@ -19,10 +19,11 @@
 // A frame in which 5 % of the boxes move. A changed box is near two groups of those of any number of boxes (1.7 to 2.0
 // from 1000 to 100 000), and is tested against both once, as the box around what it was and is: 12 comparisons of 64
 // bytes over 900 bytes, then one or two boxes of 32 in both states, beside its own 64 bytes of before and after and the
-// tests of one to five blocks above. The comparisons alone would be 12 cycles, the 200 instructions of the search about
-// 50; it takes 130, and all of a changed box 230 (80 ns) at 1000 boxes, 310 at 10 000, 450 at 100 000, where groups and
-// changed boxes come from the outer caches, and 650 at a million. More than half is the search, the rest the gathering
-// of the changed boxes, their bounds and steps before and after the search, and the sorting of what begins and ends.
+// tests of one to five blocks above. The comparisons alone would be 12 cycles; a
+// changed box takes 160 at 1000 boxes and 200 at 10 000 where the same movements come again and again, so that the
+// machine knows all branches, and 240 and 310 where they do not, 390 at 100 000 and 500 at a million, where groups and
+// changed boxes come from the outer caches. More than half is the search, the rest the gathering of the changed boxes,
+// their bounds and steps before and after the search, and the sorting of what begins and ends.
 #pragma once
 
 #include "base/memory.h"
@@ -70,8 +71,8 @@ private:
     void find_changes(TaskPool& tasks);
     void take_out(uint32_t place);
     void put_in(uint32_t place, const BroadBox& box);
-    void replace(TaskPool& tasks, const BroadBox* boxes, int count, Array<BoxPair>& begun, Array<BoxPair>& ended);
-    void sort_changes(Array<BoxPair>& begun, Array<BoxPair>& ended, bool cancel);
+    void replace(TaskPool& tasks, const BroadBox* boxes, int count);
+    void sort_changes(Array<BoxPair>& begun, Array<BoxPair>& ended);
     void note(uint32_t a, uint32_t b, bool begins);
     using Visitor = void (*)(void* context, uint32_t index);
     void visit_groups_of(const WideTreeSet& set, const float lower[3], const float upper[3], Visitor visit,
@@ -91,7 +92,7 @@ private:
     // begin and end.
     Array<uint32_t> special_;
     Array<uint64_t> removed_;  // index << 32 | place
-    Array<BoxPair> changes_;
+    Array<BoxPair> changes_, found_, lost_;
     Array<uint64_t> begun_, ended_, swap_;
 };
 

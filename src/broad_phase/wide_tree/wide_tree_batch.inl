@@ -17,6 +17,8 @@ LENDULET_FORCE_INLINE Spread<F> spread(const BroadBox& box) {
 // Up to 64 boxes, the rows, and the tree they are searched in. Search::look(list) is given the groups near them; what
 // it sees of one row comes in the order of groups, wherever lists end, and that of earlier rows before that of later
 // ones.
+//
+// A row may have a group of its own, rows_[i].index, which is not looked at with the others; no_box: none.
 template <class F, class Search>
 class BatchSearch {
 public:
@@ -46,10 +48,12 @@ protected:
 
     void run(int count) {
         if (tree_.group_count == 0) return;
-        List& top = lists_[tree_.levels];
-        for (int i = 0; i < count; ++i) top.at[i] = entry(i, 0);
-        top.count = count;
-        for (int level = tree_.levels; level > 0; --level) descend(level);
+        int level = tree_.levels;
+        const int top = common_node(count, level);
+        List& list = lists_[level];
+        for (int i = 0; i < count; ++i) list.at[i] = entry(i, top);
+        list.count = count;
+        for (; level > 0; --level) descend(level);
         look();
     }
 
@@ -57,20 +61,49 @@ protected:
     BroadBox rows_[most_rows];
 
 private:
+    // The lowest block that holds all that the rows may be near, and its level: rows that lie together share the way to
+    // there.
+    int common_node(int count, int& level) const {
+        if (level == 1) return 0;
+        Quad lower = load_wide<Quad>(rows_[0].lower), upper = load_wide<Quad>(rows_[0].upper);
+        for (int i = 1; i < count; ++i) {
+            lower = minimum(load_wide<Quad>(rows_[i].lower), lower);
+            upper = maximum(load_wide<Quad>(rows_[i].upper), upper);
+        }
+        const Spread<F> all = spread<F>(lower, upper);
+        int node = 0;
+        for (; level > 1; --level) {
+            const uint32_t lanes = overlaps<F>(tree_.blocks[tree_.first_block[level - 1] + node], all);
+            if (lanes == 0 || (lanes & (lanes - 1)) != 0) break;
+            node = node * block_lanes + __builtin_ctz(lanes);
+        }
+        return node;
+    }
     // The children of the blocks in list `level`, which are those of level - 1, to the list below.
     void descend(int level) {
         List &from = lists_[level], &to = lists_[level - 1];
         const BoundsBlock* blocks = tree_.blocks + tree_.first_block[level - 1];
-        for (int i = 0; i < from.count; ++i) {
+        const int entries = from.count;
+        int found = to.count;  // in a register: each entry waits for the number of the one before
+        const uint32_t own_lanes = level == 1 && Search::skips_own ? static_cast<uint32_t>(lanes_of<F>) : 0;
+        for (int i = 0; i < entries; ++i) {
             const int row = row_of(from.at[i]), node = node_of(from.at[i]);
             Spread<F> box = spread<F>(rows_[row]);
             for (int k = 0; k < block_lanes; k += lanes_of<F>) {
                 uint32_t lanes = overlaps<F>(blocks[node].bounds[0] + k, block_lanes, box);
-                store_numbers<F>(to.at + to.count, lanes, entry(row, node * block_lanes + k));
-                to.count += __builtin_popcount(lanes);
+                if constexpr (Search::skips_own) {
+                    const uint32_t own = rows_[row].index - static_cast<uint32_t>(node * block_lanes + k);
+                    lanes &= ~(uint32_t{own < own_lanes} << own % 32);
+                }
+                store_numbers<F>(to.at + found, lanes, entry(row, node * block_lanes + k));
+                found += __builtin_popcount(lanes);
             }
-            if (to.count > List::most - block_lanes) level > 1 ? descend(level - 1) : look();
+            if (found <= List::most - block_lanes) continue;
+            to.count = found;
+            level > 1 ? descend(level - 1) : look();
+            found = 0;
         }
+        to.count = found;
         from.count = 0;
     }
     void look() {

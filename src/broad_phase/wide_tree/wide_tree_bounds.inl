@@ -7,14 +7,6 @@ template <class F>
 struct Spread {
     F at[bound_count];
 };
-// All lanes the same, bit by bit: splat() adds zero, which is an instruction more, for it makes +0 of -0.
-template <class F>
-LENDULET_FORCE_INLINE F repeat(float x) {
-    using Integers = Wide<int32_t, lanes_of<F>>;
-    int32_t bits;
-    std::memcpy(&bits, &x, sizeof bits);
-    return (F)(Integers{} + bits);
-}
 template <class F>
 LENDULET_FORCE_INLINE Spread<F> spread(const float* bounds, int stride) {
     Spread<F> box;

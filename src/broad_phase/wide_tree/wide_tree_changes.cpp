@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cfloat>
 
+#include "base/prefetch.h"
 #include "broad_phase/block.h"
 #include "broad_phase/wide_tree/wide_tree_set.h"
 #include "math/wide/quads.h"
@@ -13,12 +14,14 @@ namespace {
 using Quad = Wide<float, 4>;
 
 constexpr float all_space = FLT_MAX;
+constexpr int ahead = 16;       // rows of a batch whose boxes are asked for
+constexpr int most_near = 512;  // groups beyond so many are likely not to be near
+// So often a group may lose what made its bounds before they are found anew: for that all its boxes have to be read.
+constexpr uint8_t most_loosened = 3;
 
 // A box may leave the bounds its group was built with by this share of their longest edge before it counts as one that
 // jumps. Groups can then at most double their edges.
 constexpr float leeway = 0.5f;
-
-constexpr uint8_t may_shrink = 3;  // in is_touched_: its bounds may have to be found anew
 
 // Its edges are finite numbers.
 bool measurable(const BroadBox& box) {
@@ -44,18 +47,13 @@ bool contains(const BroadBox& home, const BroadBox& box) {
     return three_at_most(lower_of(home), lower_of(box), upper_of(box), upper_of(home));
 }
 
-BroadBox around(const BroadBox& a, const BroadBox& b) {
-    BroadBox both;
-    store_wide(both.lower, minimum(lower_of(a), lower_of(b)));
-    store_wide(both.upper, maximum(upper_of(a), upper_of(b)));
-    return both;
-}
-
 }  // namespace
 
 void WideTreeSet::begin_changes() {
     touched_.clear();
-    marks_ = 0;
+    shrunk_.clear();
+    marks_ = begun_marks_ = 0;
+    first_touched_ = end_touched_ = 0;
     if (mapped_) return;
     mapped_ = true;
     lane_of_.resize_unset(static_cast<size_t>(count_));
@@ -69,7 +67,7 @@ void WideTreeSet::begin_changes() {
     home_.resize_unset(groups);
     first_row_.resize_unset(groups);
     changed_.assign(groups, 0);
-    is_touched_.assign(groups, 0);
+    loosened_.assign(groups, 0);
     for (size_t i = 0; i < groups; ++i) home_[i] = home_of(bounds_at(0, static_cast<uint32_t>(i)));
 }
 
@@ -93,11 +91,6 @@ void WideTreeSet::swap_places(uint32_t a, uint32_t b) {
     }
 }
 
-void WideTreeSet::touch(uint32_t group) {
-    if (!is_touched_[group]) touched_.push_back(group);
-    is_touched_[group] |= 1;
-}
-
 void WideTreeSet::mark(const uint32_t* places, int count, Array<uint32_t>& unbounded) {
     touched_.reserve(touched_.size() + static_cast<size_t>(count));
     uint32_t* next = touched_.data() + touched_.size();
@@ -107,67 +100,83 @@ void WideTreeSet::mark(const uint32_t* places, int count, Array<uint32_t>& unbou
             unbounded.push_back(places[i]);
             continue;
         }
+        *next = group;  // whether it is new there is not to be foreseen
+        next += changed_[group] == 0;
         changed_[group] |= uint64_t{1} << lane % group_lanes;
         ++marks_;
-        *next = group;  // whether it is new there is not to be foreseen
-        next += !is_touched_[group];
-        is_touched_[group] = 1;
     }
     touched_.resize_unset(static_cast<size_t>(next - touched_.data()));
+    list_marks();
 }
 
-// Few are sorted; for many it is faster to look at all groups.
-void WideTreeSet::sort_touched() {
+// The lanes of the marks in order. Few groups are sorted; for many it is faster to look at all.
+void WideTreeSet::list_marks() {
     if (touched_.size() * 16 < groups_.size()) {
         std::sort(touched_.begin(), touched_.end());  // order: total
-        return;
+    } else {
+        touched_.resize_unset(groups_.size() + 1);
+        size_t n = 0;
+        for (size_t g = 0; g < groups_.size(); ++g) {
+            touched_[n] = static_cast<uint32_t>(g);
+            n += changed_[g] != 0;
+        }
+        touched_.resize_unset(n);
     }
-    size_t n = 0;
-    for (size_t i = 0; i < groups_.size(); ++i) {
-        if (is_touched_[i]) touched_[n++] = static_cast<uint32_t>(i);
+    constexpr int usual = 6;  // marks of a group; a loop over them would end where the machine does not expect it
+    marked_lane_.resize_unset(static_cast<size_t>(marks_) + ahead + usual);
+    uint32_t* next = marked_lane_.data();
+    for (uint32_t g : touched_) {
+        uint64_t left = changed_[g];
+        auto list = [&] {
+            *next = g * group_lanes + static_cast<uint32_t>(__builtin_ctzll(left | uint64_t{1} << 63));
+            next += left != 0;
+            left &= left - 1;
+        };
+        for (int i = 0; i < usual; ++i) list();
+        while (left) list();
+        changed_[g] = 0;
     }
+    for (int i = 0; i < ahead && marks_ > 0; ++i) next[i] = next[-1];
 }
 
-// First the lanes of the marks, so that what the rows need can be asked for some rows ahead: it is scattered over the
-// memory of both frames.
-void WideTreeSet::gather(const BroadBox* boxes, Array<uint32_t>& jumped) {
-    constexpr size_t ahead = 12;
-    sort_touched();
-    rows_.resize_unset(static_cast<size_t>(marks_));
-    row_lane_.resize_unset(static_cast<size_t>(marks_) + ahead);
-    uint32_t* next = row_lane_.data();
-    for (uint32_t g : touched_) {
-        first_row_[g] = static_cast<uint32_t>(next - row_lane_.data());
-        uint64_t left = changed_[g];
-        do {
-            *next++ = g * group_lanes + static_cast<uint32_t>(__builtin_ctzll(left));
-        } while (left &= left - 1);
-    }
-    uint32_t* lanes = row_lane_.data();
-    const auto marks = static_cast<size_t>(next - lanes);
-    for (size_t i = 0; i < ahead && marks > 0; ++i) lanes[marks + i] = lanes[marks - 1];
+// Of whole groups, so that no group waits with one changed box while another is searched. What the rows need lies
+// scattered over the memory of both frames, and is asked for some rows ahead.
+bool WideTreeSet::next_batch(const BroadBox* boxes, int most, Array<uint32_t>& jumped) {
+    if (begun_marks_ == marks_) return false;
+    const uint32_t* marked = marked_lane_.data();
+    const int begin = begun_marks_;
+    int end = marks_ - begin > most ? begin + most : marks_;
+    while (end < marks_ && marked[end] / group_lanes == marked[end - 1] / group_lanes) ++end;
+    begun_marks_ = end;
+    first_touched_ = end_touched_;
+    while (end_touched_ < touched_.size() && touched_[end_touched_] <= marked[end - 1] / group_lanes) ++end_touched_;
+    rows_.resize_unset(static_cast<size_t>(end - begin));
+    row_lane_.resize_unset(static_cast<size_t>(end - begin));
     const uint32_t* place = place_.data();
     const BroadBox* home = home_.data();
     BoxGroup* groups = groups_.data();
+    const CoarseBoxes* coarse = coarse_.data();
+    const bool far = groups_.count() > most_near;
     WideTreeChange* row = rows_.data();
-    for (size_t i = 0; i < marks; ++i) {
-        const uint32_t lane = lanes[i], g = lane / group_lanes, soon = lanes[i + ahead];
+    uint32_t* row_lane = row_lane_.data();
+    for (int i = begin; i < end; ++i) {
+        const uint32_t lane = marked[i], g = lane / group_lanes, soon = marked[i + ahead];
         __builtin_prefetch(&boxes[place[soon]]);
         __builtin_prefetch(&groups[soon / group_lanes].boxes[soon % group_lanes], 1);
+        if (far) prefetch<sizeof(CoarseBoxes) / 64>(&coarse[soon / group_lanes]);
         row->after = boxes[place[lane]];
         row->before = groups[g].boxes[lane % group_lanes];
         if (contains(home[g], row->after) && row->after.index == row->before.index) {
-            lanes[row++ - rows_.data()] = lane;
+            *row_lane++ = lane;
+            ++row;
             continue;
         }
-        changed_[g] &= ~(uint64_t{1} << lane % group_lanes);
         jumped.push_back(place[lane]);
     }
-    const auto n = static_cast<uint32_t>(row - rows_.data());
-    rows_.resize_unset(n);
-    row_lane_.resize_unset(n);
-    if (n == marks) return;
-    for (uint32_t i = n; i-- > 0;) first_row_[row_lane_[i] / group_lanes] = i;
+    rows_.resize_unset(static_cast<size_t>(row - rows_.data()));
+    row_lane_.resize_unset(rows_.size());
+    widen();
+    return true;
 }
 
 void WideTreeSet::clear_lane(uint32_t lane) {
@@ -191,18 +200,17 @@ void WideTreeSet::remove(uint32_t place) {
         return;
     }
     clear_lane(lane);
-    touch(lane / group_lanes);
-    is_touched_[lane / group_lanes] = may_shrink;
+    shrunk_.push_back(lane / group_lanes);
 }
 
 WideTreeChanges WideTreeSet::changes() const {
-    return {changed_.data(), first_row_.data(), rows_.data(), row_lane_.data()};
+    return {changed_.data(), first_row_.data(), rows_.data(), row_lane_.data(), row_steps_.data()};
 }
 
 // The bounds of the levels above some groups, in order, from those below.
-void WideTreeSet::raise(const Array<uint32_t>& groups) {
+void WideTreeSet::raise(const uint32_t* groups, size_t count) {
     parents_.clear();
-    parents_.append(groups.data(), groups.size());
+    parents_.append(groups, count);
     for (int level = 1; level < levels_; ++level) {
         size_t n = 0;
         for (uint32_t child : parents_) {
@@ -226,62 +234,72 @@ void WideTreeSet::extend_bounds(int level, uint32_t child, const BroadBox& box) 
     }
 }
 
+// The boxes of after into their lanes, with the steps of both states, and what is above made to hold both.
 void WideTreeSet::widen() {
-    sort_touched();
-    const uint32_t *lanes = row_lane_.data(), *end = lanes + rows_.size();
+    row_steps_.resize_unset(rows_.size());
+    kernels_.take_over(groups_.data(), coarse_.data(), rows_.data(), row_lane_.data(), rows_.count(),
+                       row_steps_.data());
+    shrunk_.reserve(shrunk_.size() + end_touched_ - first_touched_);
+    uint32_t* shrunk = shrunk_.data() + shrunk_.size();
+    const uint32_t *lane = row_lane_.data(), *end = lane + rows_.size();
     const WideTreeChange* row = rows_.data();
-    while (lanes < end) {
-        const uint32_t g = *lanes / group_lanes;
-        BoxGroup& group = groups_[g];
-        CoarseBoxes& coarse = coarse_[g];
+    while (lane < end) {
+        const uint32_t g = *lane / group_lanes;
+        first_row_[g] = static_cast<uint32_t>(row - rows_.data());
         const Bounds6 bounds = bounds_at(0, g);
         const Quad lower{bounds.at[0], bounds.at[1], bounds.at[2], 0},
             upper{bounds.at[3], bounds.at[4], bounds.at[5], 0};
         Quad lowest = lower, highest = upper;
         auto inwards = lower > upper;  // sides that a box leaves which has made them what they are
-        for (; lanes < end && *lanes / group_lanes == g; ++lanes, ++row) {
+        uint64_t changed = 0;
+        for (; lane < end && *lane / group_lanes == g; ++lane, ++row) {
             const Quad low = lower_of(row->after), high = upper_of(row->after);
-            set_steps(coarse, *lanes % group_lanes, around(row->before, row->after));
-            group.boxes[*lanes % group_lanes] = row->after;
+            changed |= uint64_t{1} << *lane % group_lanes;
             inwards |= (lower_of(row->before) <= lower) & (low > lower);
             inwards |= (upper_of(row->before) >= upper) & (high < upper);
             lowest = minimum(low, lowest);
             highest = maximum(high, highest);
         }
-        if (mask_bits(inwards) & 7) is_touched_[g] = may_shrink;
+        changed_[g] = changed;
+        *shrunk = g;
+        const uint8_t loosened = loosened_[g] + ((mask_bits(inwards) & 7) != 0);
+        loosened_[g] = loosened;
+        shrunk += loosened >= most_loosened;
         set_bounds(0, g, {{lowest[0], lowest[1], lowest[2], highest[0], highest[1], highest[2]}});
     }
-    raise(touched_);
+    shrunk_.resize_unset(static_cast<size_t>(shrunk - shrunk_.data()));
+    raise(touched_.data() + first_touched_, end_touched_ - first_touched_);
 }
 
-void WideTreeSet::settle(int count) {
+void WideTreeSet::settle() {
     CoarseBoxes* coarse = coarse_.data();
-    const uint32_t* lane = row_lane_.data();
-    for (const WideTreeChange& row : rows_) {
-        set_steps(coarse[*lane / group_lanes], *lane % group_lanes, row.after);
-        ++lane;
-    }
-    shrunk_.clear();
-    for (uint32_t g : touched_) {
+    const StepsOfTwo* steps = row_steps_.data();
+    for (uint32_t lane : row_lane_) store_steps(coarse[lane / group_lanes], lane % group_lanes, steps++->second);
+    for (size_t i = first_touched_; i < end_touched_; ++i) changed_[touched_[i]] = 0;
+}
+
+void WideTreeSet::end_changes(int count) {
+    lane_of_.resize(static_cast<size_t>(count), no_box);
+    count_ = count;
+    std::sort(shrunk_.begin(), shrunk_.end());  // order: total; those of boxes taken out come last, and twice
+    uint32_t last = no_box;
+    for (uint32_t g : shrunk_) {
+        if (g == last) continue;
+        last = g;
+        loosened_[g] = 0;
         Bounds6 bounds;
-        if (is_touched_[g] == may_shrink) {
-            kernels_.group_bounds(groups_[g], bounds);
-            set_bounds(0, g, bounds);
-            shrunk_.push_back(g);
-        } else {
-            bounds = bounds_at(0, g);
-        }
-        if (g < static_cast<uint32_t>(built_groups_)) {
-            float size = size_of(bounds);
+        kernels_.group_bounds(groups_[g], bounds);
+        set_bounds(0, g, bounds);
+    }
+    for (const Array<uint32_t>* groups : {&touched_, &shrunk_}) {
+        for (uint32_t g : *groups) {
+            if (g >= static_cast<uint32_t>(built_groups_)) break;
+            const float size = size_of(bounds_at(0, g));
             size_sum_ += size - size_[g];
             size_[g] = size;
         }
-        changed_[g] = 0;
-        is_touched_[g] = 0;
     }
-    raise(shrunk_);
-    lane_of_.resize(static_cast<size_t>(count), no_box);
-    count_ = count;
+    raise(shrunk_.data(), shrunk_.size());
 }
 
 // A loose group at the end, empty.
@@ -299,7 +317,7 @@ void WideTreeSet::add_group() {
     home_.push_back({{-all_space, -all_space, -all_space}, 0, {all_space, all_space, all_space}, 0});
     size_.push_back(0);
     changed_.push_back(0);
-    is_touched_.push_back(0);
+    loosened_.push_back(0);
     first_row_.push_back(0);
     loose_used_ = 0;
     if (before % block_lanes) return;

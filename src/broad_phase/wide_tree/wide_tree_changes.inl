@@ -1,6 +1,6 @@
 // Part of wide_tree_kernels.inl: pairs that begin and end. Which do follows from the boxes of before and after alone,
 // so no list of pairs is kept. While the changes are searched, the steps of a changed box are those of the box around
-// both; its two states stand in its row.
+// both; its two states stand in its row. Of two changed boxes the one in the earlier lane looks.
 
 // Up to 64 changes of the moving set and the tree they are searched in.
 template <class F>
@@ -11,10 +11,11 @@ class ChangeSearch : public BatchSearch<F, ChangeSearch<F>> {
 public:
     // `in_moving`: the tree is that of the moving set, with changed boxes of its own.
     ChangeSearch(const WideTreeView& tree, const WideTreeChanges& changes, bool in_moving, PairStream& out)
-        : Base(tree), changes_(changes), in_moving_(in_moving), out_(out) {}
+        : Base(tree), changes_(changes), in_moving_(in_moving), out_(out), far_(tree.group_count > most_near) {}
 
     void search(int first, int count) {
         first_ = first;
+        count_ = count;
         for (int i = 0; i < count; ++i) {
             const WideTreeChange& change = changes_.rows[first + i];
             auto quad = [](const float* p) { return load_wide<Quad>(p); };
@@ -24,11 +25,14 @@ public:
             this->rows_[i].index = in_moving_ ? lane / group_lanes : no_box;  // where the box itself is
             this->rows_[i].unused = lane % group_lanes;
         }
+        if (in_moving_) look_in_own();
         this->run(count);
+        compare();
     }
 
 private:
     friend Base;
+    static constexpr bool skips_own = true;
 
     // What may meet: an entry of a list, and below it a lane of that group.
     using Candidate = uint64_t;
@@ -36,58 +40,70 @@ private:
     static_assert(group_lanes == 1 << lane_bits);
 
     // Groups beyond so many are likely not to be near, and are asked for so many entries ahead.
-    static constexpr int most_near = 512, ahead = 8;
+    static constexpr int most_near = 512, ahead = 8, compared_ahead = 16;
+
+    // Their own groups first, whose frames their steps are in already.
+    void look_in_own() {
+        for (int i = 0; i < count_; ++i) {
+            const uint32_t g = this->rows_[i].index, lane = this->rows_[i].unused;
+            const uint64_t steps = changes_.steps[first_ + i].around;
+            uint64_t lanes = may_overlap<F>(this->tree_.coarse[g], (Bytes16)Wide<uint64_t, 2>{steps, steps});
+            lanes &= ~(changes_.changed[g] & (all_lanes >> (group_lanes - 1 - lane)));
+            note(Base::entry(i, static_cast<int>(g)), lanes);
+        }
+    }
 
     void look(const List& list) {
-        Candidate found[most_candidates + group_lanes + 2];
-        Candidate* next = found;
         const CoarseBoxes* groups = this->tree_.coarse;
-        const bool far = this->tree_.group_count > most_near;
         for (int i = 0; i < list.count; ++i) {
             const uint32_t entry = list.at[i];
-            if (far && i + ahead < list.count)
+            if (far_ && i + ahead < list.count)
                 prefetch<sizeof(CoarseBoxes) / 64>(&groups[Base::node_of(list.at[i + ahead])]);
             const BroadBox& row = this->rows_[Base::row_of(entry)];
             const auto g = static_cast<uint32_t>(Base::node_of(entry));
             uint64_t lanes = may_overlap<F>(groups[g], steps_of(groups[g], row));
-            lanes &= ~(uint64_t{row.index == g} << row.unused);
-            const Candidate base = uint64_t{entry} << lane_bits;
-            // Mostly there are one or two or none; a loop would end where the machine does not expect it.
-            auto note = [&] {
-                *next = base + static_cast<uint64_t>(__builtin_ctzll(lanes | uint64_t{1} << 63));
-                next += lanes != 0;
-                lanes &= lanes - 1;
-            };
-            note();
-            note();
-            while (lanes) note();
-            if (next - found > most_candidates) {
-                compare(found, next);
-                next = found;
-            }
+            if (in_moving_) lanes &= ~(changes_.changed[g] & (uint64_t{0} - (g < row.index)));
+            note(entry, lanes);
         }
-        compare(found, next);
     }
 
-    void compare(const Candidate* found, const Candidate* end) {
+    // Mostly there are one or two or none; a loop would end where the machine does not expect it.
+    LENDULET_FORCE_INLINE void note(uint32_t entry, uint64_t lanes) {
+        const Candidate base = uint64_t{entry} << lane_bits;
+        Candidate* next = next_;
+        auto lowest = [&] {
+            *next = base + lowest_lane(lanes);
+            next += lanes != 0;
+            lanes &= lanes - 1;
+        };
+        lowest();
+        lowest();
+        while (lanes) lowest();
+        next_ = next;
+        if (next_ - found_ > most_candidates) compare();
+    }
+
+    void ask_for(Candidate candidate) const {
+        const auto entry = static_cast<uint32_t>(candidate >> lane_bits);
+        prefetch(&this->tree_.groups[Base::node_of(entry)].boxes[candidate % group_lanes]);
+    }
+
+    void compare() {
+        const Candidate *found = found_, *end = next_;
+        next_ = found_;
         const BoxGroup* groups = this->tree_.groups;
+        for (int i = 0; i < compared_ahead && found + i < end; ++i) ask_for(found[i]);
         while (found < end) {
             if (out_.end - out_.next < static_cast<ptrdiff_t>(PairList::most_at_once)) out_.full(out_);
             const Candidate* stop = end - found < out_.end - out_.next ? end : found + (out_.end - out_.next);
             BoxPair* next = out_.next;
             for (; found < stop; ++found) {
-                if (end - found > ahead) {
-                    const auto soon = static_cast<uint32_t>(found[ahead] >> lane_bits);
-                    prefetch(&groups[Base::node_of(soon)].boxes[found[ahead] % group_lanes]);
-                }
+                if (end - found > compared_ahead) ask_for(found[compared_ahead]);
                 const auto entry = static_cast<uint32_t>(*found >> lane_bits);
                 const uint32_t i = *found % group_lanes, g = static_cast<uint32_t>(Base::node_of(entry));
                 const WideTreeChange& mine = changes_.rows[first_ + Base::row_of(entry)];
                 const BroadBox *before = &groups[g].boxes[i], *after = before;
                 if (in_moving_ && changes_.changed[g] >> i & 1) {
-                    // Of two changed boxes the one in the earlier lane looks.
-                    const BroadBox& own = this->rows_[Base::row_of(entry)];
-                    if (g * group_lanes + i < own.index * group_lanes + own.unused) continue;
                     const int earlier = __builtin_popcountll(changes_.changed[g] & ~(all_lanes << i));
                     const WideTreeChange& other = changes_.rows[changes_.first[g] + static_cast<uint32_t>(earlier)];
                     before = &other.before;
@@ -107,8 +123,22 @@ private:
     const WideTreeChanges& changes_;
     const bool in_moving_;
     PairStream& out_;
-    int first_ = 0;
+    const bool far_;
+    int first_ = 0, count_ = 0;
+    Candidate* next_ = found_;
+    Candidate found_[most_candidates + group_lanes + 2];
 };
+
+template <class F>
+void take_over(BoxGroup* groups, CoarseBoxes* coarse, const WideTreeChange* rows, const uint32_t* lanes, int count,
+               StepsOfTwo* steps) {
+    for (int i = 0; i < count; ++i) {
+        const uint32_t g = lanes[i] / group_lanes, lane = lanes[i] % group_lanes;
+        steps[i] = steps_of_two(coarse[g], rows[i].before, rows[i].after);
+        store_steps(coarse[g], lane, steps[i].around);
+        groups[g].boxes[lane] = rows[i].after;
+    }
+}
 
 template <class F>
 void find_changes(const WideTreeView& moving, const WideTreeView& fixed, const WideTreeChanges& changes, int begin,

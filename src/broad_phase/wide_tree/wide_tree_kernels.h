@@ -45,13 +45,14 @@ struct alignas(64) WideTreeChange {
     BroadBox before, after;  // of the same index
 };
 
-// The boxes of the moving set that change between two frames, sorted by their lanes. While they are searched, the
-// steps of their lanes are those of the box around before and after, and all bounds above hold both.
+// Boxes of the moving set that change between two frames, one batch, sorted by their lanes. While they are searched,
+// the steps of their lanes are those of the box around before and after, and all bounds above hold both.
 struct WideTreeChanges {
     const uint64_t* changed = nullptr;     // of each group, the lanes that change
     const uint32_t* first = nullptr;       // of each group with such lanes, where its rows begin
     const WideTreeChange* rows = nullptr;  // in the order of lanes
     const uint32_t* lanes = nullptr;       // of each row, counted through all groups
+    const StepsOfTwo* steps = nullptr;     // of each row, before and after, in the frame of its group
 };
 
 // Where a query writes the indices of hits: from `next` on there is room for a group's, or `full` has to be called.
@@ -70,6 +71,9 @@ struct WideTreeKernels {
     void (*block_bounds)(const BoundsBlock& block, Bounds6& bounds);
     // Pairs of the groups [begin, end) of `moving`: within each, with the groups after it, with those of `fixed`.
     void (*find_pairs)(const WideTreeView& moving, const WideTreeView& fixed, int begin, int end, PairStream& out);
+    // Changed boxes get their lanes' boxes of after and the steps around both states; gives those and those of after.
+    void (*take_over)(BoxGroup* groups, CoarseBoxes* coarse, const WideTreeChange* rows, const uint32_t* lanes,
+                      int count, StepsOfTwo* steps);
     // Pairs that begin (written a < b) and end (written a > b) with the rows [begin, end) of the changes, in an order
     // that depends on where the ranges are cut.
     void (*find_changes)(const WideTreeView& moving, const WideTreeView& fixed, const WideTreeChanges& changes,

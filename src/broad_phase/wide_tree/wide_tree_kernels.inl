@@ -13,6 +13,15 @@ namespace {
 
 constexpr uint64_t all_lanes = ~uint64_t{0};
 
+// Of no lanes: any number.
+LENDULET_FORCE_INLINE uint64_t lowest_lane(uint64_t lanes) {
+#if defined(__BMI__)
+    return _tzcnt_u64(lanes);
+#else
+    return static_cast<uint64_t>(__builtin_ctzll(lanes | uint64_t{1} << 63));
+#endif
+}
+
 LENDULET_FORCE_INLINE int take_lane(uint64_t& lanes) {
     int lane = __builtin_ctzll(lanes);
     lanes &= lanes - 1;
@@ -31,8 +40,9 @@ LENDULET_FORCE_INLINE int take_lane(uint64_t& lanes) {
 
 template <class F>
 constexpr WideTreeKernels make_wide_tree_kernels() {
-    return {lanes_of<F>,     fill_group<F>,       bounds_of_group<F>, bounds_of_block<F>,    find_pairs<F>,
-            find_changes<F>, find_overlapping<F>, find_hits<F>,       find_best<F, BoxCast>, find_best<F, NearestBox>};
+    return {lanes_of<F>,   fill_group<F>,         bounds_of_group<F>,      bounds_of_block<F>,
+            find_pairs<F>, take_over<F>,          find_changes<F>,         find_overlapping<F>,
+            find_hits<F>,  find_best<F, BoxCast>, find_best<F, NearestBox>};
 }
 
 }  // namespace

@@ -42,6 +42,7 @@ public:
 
 private:
     friend Base;
+    static constexpr bool skips_own = false;
     struct Hits {
         uint64_t lanes;
         uint32_t entry;

@@ -47,20 +47,20 @@ public:
     // 2. Marks boxes that change, once. Appends those that are unbounded to `unbounded` instead: they are to be removed
     // and inserted.
     void mark(const uint32_t* places, int count, Array<uint32_t>& unbounded);
-    // 3. Collects the marked boxes before and after, `boxes` being the new array. Appends the places of those that jump
-    // or become another box to `jumped`: they are no longer marked, but to be removed and inserted.
-    void gather(const BroadBox* boxes, Array<uint32_t>& jumped);
-    // 4. Takes a box out.
-    void remove(uint32_t place);
-    // 5. Makes the bounds above the marked groups hold the boxes of before and after. From here to 6 the changes can be
-    // searched: those of changed_groups().
-    void widen();
+    // 3. Collects the next of the marked boxes, of about `most`, before and after, `boxes` being the new array; they
+    // get their new state, and all bounds hold both, so that their changes can be searched. False where none are left.
+    // Appends the places of those that jump or become another box to `jumped`: they are no longer marked, but to be
+    // removed and inserted.
+    bool next_batch(const BroadBox* boxes, int most, Array<uint32_t>& jumped);
     WideTreeChanges changes() const;
-    const Array<uint32_t>& changed_groups() const { return touched_; }
     int changed_count() const { return rows_.count(); }
-    // 6. Puts the boxes of after in the place of those of before. The set then has `count` boxes; those removed or new
-    // are to be inserted.
-    void settle(int count);
+    // 4. After the search of each batch: the old state goes.
+    void settle();
+    int changed_groups() const { return touched_.count(); }
+    // 5. Takes a box out.
+    void remove(uint32_t place);
+    // 6. The set then has `count` boxes; those removed or new are to be inserted.
+    void end_changes(int count);
     // 7. Puts a box in.
     void insert(uint32_t place, const BroadBox& box);
     // True where a build now saves more than it costs, as far as can be told from the work of the changes since the
@@ -77,9 +77,9 @@ private:
     void set_bounds(int level, uint32_t child, const Bounds6& bounds);
     Bounds6 bounds_at(int level, uint32_t child) const;
     void raise_bounds();
-    void raise(const Array<uint32_t>& groups);
-    void touch(uint32_t group);
-    void sort_touched();
+    void raise(const uint32_t* groups, size_t count);
+    void list_marks();
+    void widen();
     void extend_bounds(int level, uint32_t child, const BroadBox& box);
     void add_group();
     void clear_lane(uint32_t lane);
@@ -106,16 +106,20 @@ private:
     int built_groups_ = 0;          // the others are loose
     int loose_used_ = group_lanes;  // lanes of the last loose group
     int64_t wear_ = 0;
+    Array<uint8_t> loosened_;  // of each group, how often it may have become smaller than its bounds
 
     // The changes of one frame.
-    Array<uint64_t> changed_;  // of each group, the lanes that change: all zero between frames
-    Array<uint8_t> is_touched_;
-    Array<uint32_t> touched_, parents_;  // groups with a changed or removed box
-    Array<uint32_t> shrunk_;             // those of them that may have become smaller
-    Array<uint32_t> first_row_;          // of each touched group
+    int marks_ = 0, begun_marks_ = 0;   // all, and those of batches so far
+    Array<uint32_t> marked_lane_;       // in order
+    Array<uint32_t> touched_;           // groups with marks, in order
+    Array<uint32_t> shrunk_, parents_;  // groups that may have become smaller
+    // Of the present batch.
+    size_t first_touched_ = 0, end_touched_ = 0;
+    Array<uint64_t> changed_;    // of each group, the lanes that change: all zero between batches
+    Array<uint32_t> first_row_;  // of each group with such lanes
     Array<WideTreeChange> rows_;
     Array<uint32_t> row_lane_;
-    int marks_ = 0;
+    Array<StepsOfTwo> row_steps_;
 };
 
 }  // namespace lendulet

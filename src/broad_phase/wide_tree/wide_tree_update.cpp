@@ -1,7 +1,9 @@
 // The wide tree between frames. What changes goes three ways:
-// - boxes that moved a little are searched group by group with their boxes of before and after, and keep their lanes;
-// - single boxes that jumped, came or went are taken out of the old state and put into the new one, each with a query;
-// - if most did, all pairs of the old and of a newly built tree are compared.
+// - boxes that moved a little keep their lanes; batch after batch, in the order of the groups, they are searched with
+//   their boxes of before and after, among those that have changed already and those that have not yet;
+// - single boxes that jumped, came or went are then taken out of this state and put into the new one, each by a query;
+// - if most did, all pairs of this state and of a newly built tree are compared.
+// What each step begins and ends adds up to what the frame does: it is counted pair by pair when the lists are sorted.
 #include <algorithm>
 
 #include "broad_phase/sort.h"
@@ -10,6 +12,8 @@
 namespace lendulet {
 
 namespace {
+
+constexpr int boxes_per_batch = 64;  // as many as are searched together: 4 kB, and 20 groups that they change
 
 uint64_t key_of(const BoxPair& pair) { return uint64_t{pair.a} << 32 | pair.b; }
 
@@ -23,22 +27,27 @@ void WideTree::update(TaskPool& tasks, const BroadBox* boxes, int count, const u
     special_.clear();
     const uint32_t* known = std::lower_bound(changed, changed + changed_count, static_cast<uint32_t>(common));
     moving_.mark(changed, static_cast<int>(known - changed), special_);
-    moving_.gather(boxes, special_);
+    changes_.clear();
+    // One after the other, batches stay in the nearest caches from their collection to their end; many workers need
+    // all at once.
+    const int batch = tasks.workers() == 1 ? boxes_per_batch : changed_count;
+    while (moving_.next_batch(boxes, batch, special_)) {
+        find_changes(tasks);
+        moving_.settle();
+    }
     const int singles = special_.count() + (before - common) + (count - common);
     // Two queries of a single box (about 160 ns each) cost as much as eight boxes in two searches and a build.
-    if (int64_t{singles} * 8 > count + int64_t{256}) return replace(tasks, boxes, count, begun, ended);
-
-    changes_.clear();
-    for (uint32_t place : special_) take_out(place);
-    for (int place = common; place < before; ++place) take_out(static_cast<uint32_t>(place));
-    moving_.widen();
-    find_changes(tasks);
-    const int queries = moving_.changed_groups().count() + 2 * singles;
-    moving_.settle(count);
-    for (uint32_t place : special_) put_in(place, boxes[place]);
-    for (int place = common; place < count; ++place) put_in(static_cast<uint32_t>(place), boxes[place]);
-    sort_changes(begun, ended, singles > 0);
-    if (moving_.worn(queries)) set_moving(boxes, count, &tasks);
+    if (int64_t{singles} * 8 > count + int64_t{256}) {
+        replace(tasks, boxes, count);
+    } else {
+        for (uint32_t place : special_) take_out(place);
+        for (int place = common; place < before; ++place) take_out(static_cast<uint32_t>(place));
+        moving_.end_changes(count);
+        for (uint32_t place : special_) put_in(place, boxes[place]);
+        for (int place = common; place < count; ++place) put_in(static_cast<uint32_t>(place), boxes[place]);
+        if (moving_.worn(moving_.changed_groups() + 2 * singles)) set_moving(boxes, count, &tasks);
+    }
+    sort_changes(begun, ended);
 }
 
 // Where a caller fills the hole of a removed box with his last one, that box keeps its lane.
@@ -93,24 +102,27 @@ void WideTree::put_in(uint32_t place, const BroadBox& box) {
     moving_.insert(place, box);
 }
 
-void WideTree::replace(TaskPool& tasks, const BroadBox* boxes, int count, Array<BoxPair>& begun,
-                       Array<BoxPair>& ended) {
+// From the state that changes_ leads to.
+void WideTree::replace(TaskPool& tasks, const BroadBox* boxes, int count) {
     auto all_pairs = [&](Array<uint64_t>& keys) {
-        changes_.clear();
-        find_pairs(tasks, changes_);
+        found_.clear();
+        find_pairs(tasks, found_);
         keys.clear();
-        for (const BoxPair& pair : changes_) keys.push_back(key_of(pair));
+        for (const BoxPair& pair : found_) keys.push_back(key_of(pair));
         sort_keys(keys, swap_);
     };
     all_pairs(ended_);
     set_moving(boxes, count, &tasks);
     all_pairs(begun_);
-    append_missing(begun_, ended_, begun);
-    append_missing(ended_, begun_, ended);
+    found_.clear();
+    lost_.clear();
+    append_differences(begun_, ended_, found_, lost_);
+    for (const BoxPair& pair : found_) note(pair.a, pair.b, true);
+    for (const BoxPair& pair : lost_) note(pair.a, pair.b, false);
 }
 
-// A single box that was taken out and put in again may have ended pairs and begun them anew: those cancel.
-void WideTree::sort_changes(Array<BoxPair>& begun, Array<BoxPair>& ended, bool cancel) {
+// What changes in several steps may begin and end, or the other way round, and more than once: that cancels.
+void WideTree::sort_changes(Array<BoxPair>& begun, Array<BoxPair>& ended) {
     begun_.resize_unset(changes_.size());
     ended_.resize_unset(changes_.size());
     size_t begins = 0, ends = 0;
@@ -125,9 +137,7 @@ void WideTree::sort_changes(Array<BoxPair>& begun, Array<BoxPair>& ended, bool c
     ended_.resize_unset(ends);
     sort_keys(begun_, swap_);
     sort_keys(ended_, swap_);
-    if (!cancel) removed_.clear();
-    append_missing(begun_, cancel ? ended_ : removed_, begun);
-    append_missing(ended_, cancel ? begun_ : removed_, ended);
+    append_differences(begun_, ended_, begun, ended);
 }
 
 }  // namespace lendulet

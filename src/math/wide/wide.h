@@ -49,6 +49,14 @@ LENDULET_FORCE_INLINE F splat(float x) {
     if constexpr (sizeof(F) == sizeof(float)) return x;
     else return F{} + x;
 }
+// All lanes the same, bit by bit: splat() adds zero, which is an instruction more, for it makes +0 of -0.
+template <class F>
+LENDULET_FORCE_INLINE F repeat(float x) {
+    using Integers = Wide<int32_t, lanes_of<F>>;
+    int32_t bits;
+    std::memcpy(&bits, &x, sizeof bits);
+    return (F)(Integers{} + bits);
+}
 template <class F>
 LENDULET_FORCE_INLINE Vec3T<F> splat(Vec3 v) {
     return {splat<F>(v.x), splat<F>(v.y), splat<F>(v.z)};
