@@ -100,7 +100,8 @@ TEST(JointGroups, BridgesAreNoMechanisms) {
         auto hinge = [&](BodyId body, int i) {
             const Position at{0.5f * static_cast<float>(i), 0.0f, 0.0f};
             joints.push_back(
-                world.add_joint(world.joint_at(JointType::hinge, before, body, at, {0.0f, 0.0f, 1.0f}).value()).value());
+                world.add_joint(world.joint_at(JointType::hinge, before, body, at, {0.0f, 0.0f, 1.0f}).value())
+                    .value());
             before = body;
         };
         for (int i = 0; i < planks; ++i) {

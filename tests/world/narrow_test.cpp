@@ -14,7 +14,6 @@ namespace lendulet::test {
 namespace {
 
 using scenes::Random;
-constexpr int widths[] = {1, 4, 8, 16};
 
 struct Boxes {
     std::vector<ShapeFrame> frames;

@@ -8,12 +8,12 @@
 #include "collision/narrow_phase.h"
 #include "scenes/random.h"
 #include "world/narrow/kernels.h"
+#include "world/support.h"
 
 namespace lendulet::test {
 namespace {
 
 using scenes::Random;
-constexpr int widths[] = {1, 4, 8, 16};
 constexpr int pair_count = batch_capacity;
 constexpr float near_surfaces = 0.05f;
 

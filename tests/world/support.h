@@ -9,6 +9,7 @@
 namespace lendulet::test {
 
 inline constexpr float dt = 1.0f / 60.0f;
+inline constexpr int widths[] = {1, 4, 8, 16};  // of SIMD lanes
 
 inline void run(World& world, int steps, float step = dt) {
     for (int i = 0; i < steps; ++i) world.update(step).value();
