@@ -173,15 +173,21 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int
     }
 }
 
+// The size of the largest component. Squares of what little moves a body that stands are too small for fast arithmetic.
+template <class F>
+LENDULET_FORCE_INLINE F largest(Vec3T<F> v) {
+    const Vec3T<F> a = absolute(v);
+    return maximum(maximum(a.x, a.y), a.z);
+}
+
 // The change per substep that an evenly accelerating body shows; none for a body that is being stopped or pushed, nor
 // for one that is pushed by another moving body: places must follow momenta where impulses between bodies act, or their
 // angular momentum about each other changes. `pushed`: what constraints changed in this substep.
 template <class F>
 LENDULET_FORCE_INLINE Vec3T<F> even_change(Vec3T<F> now, Vec3T<F> before, F free, Vec3T<F> pushed) {
-    Vec3T<F> d = now - before;
-    auto even = dot(d, d) <= splat<F>(0.25f) * dot(before, before);
+    auto even = largest(now - before) <= splat<F>(0.5f) * largest(before);
     const F zero = splat<F>(0.0f);
-    F untouched = select(dot(pushed, pushed) > zero, zero, splat<F>(1.0f));
+    F untouched = select(largest(pushed) > zero, zero, splat<F>(1.0f));
     free = select(free < zero, select(untouched > zero, untouched, free), free);
     return select(free > zero, now, select(free < zero, zero_vector<F>(), select(even, before, zero_vector<F>())));
 }
@@ -190,9 +196,10 @@ LENDULET_FORCE_INLINE Vec3T<F> even_change(Vec3T<F> now, Vec3T<F> before, F free
 // body any more, it stays finite.
 inline constexpr float most_speed = 2e4f, most_spin = 6e3f;
 
+// Whether any lane may be beyond `most`.
 template <class F>
-LENDULET_FORCE_INLINE bool exceeds(Vec3T<F> speed, float most) {
-    return mask_bits(dot(speed, speed) > splat<F>(most * most)) != 0;
+LENDULET_FORCE_INLINE bool may_exceed(Vec3T<F> speed, float most) {
+    return mask_bits(largest(speed) > splat<F>(0.57f * most)) != 0;  // less than 1 / sqrt(3)
 }
 
 // How much of a speed stays; 1 but for those beyond `most`.
@@ -220,7 +227,8 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
         Vec3T<F> dv = x.v - y.get(b.v_ref), dw = x.w - y.get(b.w_ref);
         Vec3T<F> more_L = apply_moments<W>(dq, y, dw);
         Vec3T<F> L = y.get(b.L) + more_L;
-        if (exceeds(start_v + x.v, most_speed) || exceeds(start_w + x.w, most_spin)) {  // and nothing of it is repeated
+        if (may_exceed(start_v + x.v, most_speed) ||
+            may_exceed(start_w + x.w, most_spin)) {  // and nothing of it is repeated
             const F speed_share = kept_share(start_v + x.v, most_speed),
                     spin_share = kept_share(start_w + x.w, most_spin);
             auto calm = x.inverse_mass * (splat<F>(1.0f) - speed_share * spin_share) <= zero;

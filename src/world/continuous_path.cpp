@@ -14,7 +14,8 @@ float most_turn_of(const WorldData& world, uint32_t body, float dt) {
     const BodyStart& start = world.solver_bodies.start[index];
     Vec3 spin = Vec3{start.w[0], start.w[1], start.w[2]} + 0.5f * Vec3{state.w[0], state.w[1], state.w[2]};
     float sine = length(Vec3{state.dq[0], state.dq[1], state.dq[2]});
-    return most * (dt * length(spin) < 3.0f ? minimum(pi * sine, full_turn) : full_turn);
+    float at_most = absolute(spin.x) + absolute(spin.y) + absolute(spin.z);
+    return most * (dt * at_most < 3.0f ? minimum(pi * sine, full_turn) : full_turn);
 }
 
 }  // namespace
