@@ -250,8 +250,7 @@ LENDULET_FORCE_INLINE void take_over(ContactRow<W, P>& c, ContactRow<W, P>& rene
 // Manifolds turn with their bodies, and what they hold with them: the bodies get the difference at once, between them,
 // so that momenta stay. What is missing since the centre's arms have followed the drift is overdue all the same.
 //
-// All rows of bodies that have turned far get new masses, and of those whose arms have grown the ones that carry
-// something or soon will. A slender body that has turned answers many times as much to an impulse, and rows that take
+// All rows get new masses. A slender body that has turned answers many times as much to an impulse, and rows that take
 // it for what it was at the start of the step would answer ever more to what they did themselves: from twice on they
 // gain energy without end.
 template <int W, int P>
@@ -264,8 +263,8 @@ template <int W, int P>
     F balls = zero;
     if constexpr (P == 1) balls = following_lanes<W, P>(c, near, now.swung);
     const F turns = maximum(corners, balls);
-    const F turned_far = now.turned - maximum(c.turn_limit, splat<F>(far_turn));
-    const F renews = select(turned_far > zero, one, select(now.swung > zero, near, turns));
+    const F renews =
+        select(maximum(now.turned - maximum(c.turn_limit, splat<F>(far_turn)), now.swung) > zero, one, turns);
     auto turned = turns > zero, far = renews > zero;
     if (!mask_bits(far)) return now;
     RecordQuads<W> record{floats_of(g.records), {}};

@@ -170,7 +170,7 @@ LENDULET_FORCE_INLINE QuatT<Wide<float, W>> turn_at_constant_L(QuatT<Wide<float,
         F steady =
             splat<F>(2.0f * h) * select(given, square_root(dot(w, w)) * anisotropy, square_root(dot(L, L)) * most);
         steady = select(symmetric > zero, zero, steady);
-        const QuatT<F> d = multiply(long_turn_less_one(splat<F>(h) * (I * L)), dq);
+        const QuatT<F> d = multiply(long_turn_less_one(splat<F>(h) * rate), dq);
         auto evenly = select(anisotropy > one, zero, select(given, zero, one)) > zero;  // about its axis, however far
         turned = select(evenly, QuatT<F>{dq.x + d.x, dq.y + d.y, dq.z + d.z, dq.w + d.w}, turned);
         symmetric = select(evenly, one, symmetric);
