@@ -230,13 +230,14 @@ void survey_contacts(WorldData& world) {
 // Whether the body can take a step as a whole, exactly: it falls without drag, and turns about one axis or by a closed
 // form (see turn.inl), or does not turn to speak of.
 bool goes_alone(const WorldData& world, uint32_t slot, float dt) {
-    constexpr float still = 1e-3f;  // rad in a step, times the anisotropy
+    constexpr float still = 1e-3f,
+                    most_turn = 64.0f;  // rad in a step, times the anisotropy; half of what long turns go to
     const BodyInfo& info = world.bodies.info[slot];
     const BodyMass& mass = world.bodies.mass[slot];
     if (info.type != BodyType::dynamic || info.has_forces || world.joints.first_of(slot) != no_joint_link) return false;
     if (info.linear_damping > 0.0f || info.angular_damping > 0.0f) return false;
-    return mass.round() || mass.symmetric() ||
-           dt * length(world.bodies.angular_velocity(slot)) * mass.anisotropy < still;
+    const float turn = dt * length(world.bodies.angular_velocity(slot)) * mass.anisotropy;
+    return turn < still || (turn < most_turn && (mass.round() || mass.symmetric()));
 }
 
 }  // namespace
