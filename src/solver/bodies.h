@@ -75,7 +75,7 @@ struct alignas(64) BodyBlock {
     Lanes acceleration[3], torque[3];
     Lanes start_v[3], start_w[3];
     Lanes linear_loss, angular_loss, anisotropy, free, joints;
-    Lanes L[3];
+    Lanes L[3], L_low[3];      // and what rounding added to L in this step
     Lanes v_ref[3], w_ref[3];  // velocities as the running pass of constraints found them
     // What constraints added to v and L since the last kick: the next substep's warm start.
     Lanes dv[3], dL[3];

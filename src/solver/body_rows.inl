@@ -55,6 +55,15 @@ LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> apply_moments(QuatT<Wide<float, W>> 
     return select(round, of_round, apply_principal(multiply(dq, body.get(b.q0)), moments, w));
 }
 
+// L and what constraints changed it by, with what rounding added (Kahan 1965): many small changes of one direction
+// would be rounded alike, each component by its own share, and a ball that spins out on a plane would roll away.
+template <int W>
+LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> add_to_L(const BlockLanes<W>& body, Vec3T<Wide<float, W>> more) {
+    const Vec3T<Wide<float, W>> L = body.get(body.block.L), d = more - body.get(body.block.L_low), sum = L + d;
+    body.put(body.block.L_low, (sum - L) - d);
+    return sum;
+}
+
 // Indices of W consecutive bodies.
 template <int W>
 struct Consecutive {
@@ -80,6 +89,7 @@ void begin_bodies(SolverBodies& bodies, int begin, int end) {
             x.put(b.inertia[k], m[4 + k]);
             x.put(b.inverse_inertia[k], m[8 + k]);
             x.put(b.L[k], m[12 + k]);
+            x.put(b.L_low[k], splat<F>(0.0f));
             x.put(b.acceleration[k], m[16 + k]);
             x.put(b.torque[k], m[20 + k]);
             x.put(b.change_v[k], m[24 + k]);
@@ -140,7 +150,7 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int
             Vec3T<F> more_L = apply_moments<W>(dq, y, rw);
             dv = y.get(b.dv) + rv;
             dL = y.get(b.dL) + more_L;
-            L = L + more_L;
+            L = add_to_L<W>(y, more_L);
             y.put(b.change_v, x.v - y.get(b.v_start));
             y.put(b.change_L, L - y.get(b.L_start));
         }
@@ -226,7 +236,7 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
         F anisotropy = y.get(b.anisotropy), free = y.get(b.free);
         Vec3T<F> dv = x.v - y.get(b.v_ref), dw = x.w - y.get(b.w_ref);
         Vec3T<F> more_L = apply_moments<W>(dq, y, dw);
-        Vec3T<F> L = y.get(b.L) + more_L;
+        Vec3T<F> L = add_to_L<W>(y, more_L);
         if (may_exceed(start_v + x.v, most_speed) ||
             may_exceed(start_w + x.w, most_spin)) {  // and nothing of it is repeated
             const F speed_share = kept_share(start_v + x.v, most_speed),
