@@ -41,6 +41,7 @@ inline constexpr uint32_t contact_rolls = 2;    // it resists rolling or spinnin
 inline constexpr uint32_t contact_sharp = 8;    // neither shape is round anywhere: corners meet faces
 inline constexpr uint32_t contact_balls = 16;   // of two balls: its normal is the line between their centres
 inline constexpr uint32_t contact_swift = 32;   // in a substep an arm grows by much of a body's size, see impacts.h
+inline constexpr uint32_t contact_passes = 64;  // met only if something else changes how the bodies move in this step
 
 // What it takes to schedule a contact, so that those who go through all of them, one by one, need not read the records.
 struct ContactEnds {
@@ -49,6 +50,7 @@ struct ContactEnds {
     bool fixed_a;  // A is not moved by constraints
     bool bounces;  // with a restitution
     bool idle;     // held nothing in the last step
+    bool passes;   // gets no row: it is left to impacts, see contact_passes
 };
 
 // What few contacts have, by record, where any material of the world has it.

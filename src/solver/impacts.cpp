@@ -338,6 +338,37 @@ void prepare_bouncing(const SolverBodies& bodies, const ContactRecord* records, 
     }
 }
 
+void mark_disturbed(const SolverBodies& bodies, BodyRange range, uint8_t* disturbed) {
+    for (int i = range.begin; i < range.end; ++i) {
+        if (disturbed[i]) continue;
+        const BodyState& s = bodies.state[static_cast<size_t>(i)];
+        const BodyBlock& block = bodies.blocks[static_cast<size_t>(i / block_bodies)];
+        const int at = i % block_bodies;
+        bool moved = false;
+        for (int k = 0; k < 3; ++k)
+            moved |= block.dv[k][at] != 0.0f || block.dL[k][at] != 0.0f || s.v[k] != block.v_ref[k][at] ||
+                     s.w[k] != block.w_ref[k][at];
+        disturbed[i] = moved;
+    }
+}
+
+void follow_passing(const SolverBodies& bodies, ContactRecord& r) {
+    const Vec3 n = load(r.normal), offset = load(r.arm_offset);
+    const BodyState &a = bodies.state[static_cast<size_t>(r.body_a)], &b = bodies.state[static_cast<size_t>(r.body_b)];
+    const float middle = 1e-5f * (r.radius_a + r.radius_b);  // that of a ball
+    auto turned = [&](const BodyState& s, Vec3 core) {
+        if (length_squared(core) <= middle * middle) return Vec3{};
+        return rotate(Quat{s.dq[0], s.dq[1], s.dq[2], s.dq[3]}, core) - core;
+    };
+    for (int j = 0; j < r.point_count; ++j) {
+        ContactPointRecord& p = r.points[j];
+        const Vec3 ra = load(p.position), half_gap = (0.5f * p.separation) * n;
+        const Vec3 core_a = ra - half_gap - r.radius_a * n, core_b = ra - offset + half_gap + r.radius_b * n;
+        const Vec3 shift = (load(b.dp) + turned(b, core_b)) - (load(a.dp) + turned(a, core_a));
+        p.separation += dot(n, shift);
+    }
+}
+
 bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, BouncingList bouncing,
                      const SubstepConstants& k, int substep) {
     const int first_sweep = 1 + max_sweeps * substep;
@@ -346,15 +377,20 @@ bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, Bouncin
         bool bounced = false;
         const int number = first_sweep + sweep;
         for (int i = 0; i < bouncing.count; ++i) {
-            const BouncingContact& c = bouncing.list[i];
+            const ImpactEnds& ends = bouncing.ends[i];
+            const auto a = static_cast<size_t>(ends.a), b = static_cast<size_t>(ends.b);
+            if (ends.passes && !(bouncing.disturbed[a] | bouncing.disturbed[b])) continue;
             // Nothing has changed where nobody was struck in the last sweep or in this one.
-            if (sweep > 0 && bodies.start[static_cast<size_t>(c.a)].struck < number - 1 &&
-                bodies.start[static_cast<size_t>(c.b)].struck < number - 1)
-                continue;
+            if (sweep > 0 && bodies.start[a].struck < number - 1 && bodies.start[b].struck < number - 1) continue;
+            BouncingContact& c = bouncing.list[i];
+            if (c.a < 0) prepare_bouncing(bodies, records, c);
             if (!may_meet(bodies, c, k)) continue;
             const ContactRecord& r = records[c.record];
             const float back = bouncing.extras ? bouncing.extras[c.record].tangential_restitution : 0.0f;
-            for (int j = 0; j < r.point_count; ++j) bounced |= bounce_point(bodies, r, r.points[j], back, k, number);
+            bool met = false;
+            for (int j = 0; j < r.point_count; ++j) met |= bounce_point(bodies, r, r.points[j], back, k, number);
+            bounced |= met;
+            if (met && bouncing.disturbed) bouncing.disturbed[a] = bouncing.disturbed[b] = 1;
         }
         any |= bounced;
         if (!bounced) break;

@@ -15,7 +15,7 @@ struct alignas(64) BouncingContact {
     explicit BouncingContact(uint32_t of_record) : record(of_record) {}
 
     uint32_t record;
-    int32_t a = 0, b = 0;
+    int32_t a = -1, b = -1;                // bodies; -1: not prepared yet
     float gap = 0.0f;                      // least separation of its points at the start of the step, m
     float normal[3] = {};                  // or the way between the centres of two balls, m
     float radii = 0.0f;                    // of two balls, m; 0: others
@@ -26,15 +26,31 @@ struct alignas(64) BouncingContact {
     float span = 0.0f;                     // largest separation, m
 };
 
-// Contacts that can bounce or are swift, in order, and what some of them have beside, by record; null where none has.
-struct BouncingList {
-    const BouncingContact* list;
-    int count;
-    const ContactExtra* extras;
+static_assert(sizeof(BouncingContact) == 64);
+
+// Its bodies, and whether it passes (contact_passes): then nothing comes of it while both move as the step began.
+struct ImpactEnds {
+    int32_t a, b;
+    bool passes;
 };
 
-// Fills in all but `record`, which is given; at the start of a step, when bodies are in their blocks.
+// Contacts that can bounce or are swift, in order.
+struct BouncingList {
+    BouncingContact* list;
+    const ImpactEnds* ends;
+    int count;
+    const ContactExtra* extras;  // what some have beside, by record; null where none has
+    uint8_t* disturbed;          // by body: 1 where it no longer moves as the step began; null where no contact passes
+};
+
+// Fills in all but `record`, which is given; once bodies are in their blocks.
 void prepare_bouncing(const SolverBodies& bodies, const ContactRecord* records, BouncingContact& contact);
+
+// Marks bodies of the range that constraints have moved since the last substep began; before its kick.
+void mark_disturbed(const SolverBodies& bodies, BodyRange range, uint8_t* disturbed);
+
+// What rows do for other contacts: leaves the separations that a contact without one has after the step.
+void follow_passing(const SolverBodies& bodies, ContactRecord& record);
 
 // Finds the points that in this substep, the given one of the step, will meet faster than k.bounce_speed, gives both
 // bodies Newton's impulse with Coulomb friction on the whole of it (restitution included; with tangential restitution

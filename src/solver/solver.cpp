@@ -101,12 +101,17 @@ void Solver::pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepCo
 }
 
 size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const ContactEnds* ends, const uint32_t* list,
-                        int count, const ContactCut& cut, ContactExtra* extras) {
+                        ContactCount count, const ContactCut& cut, ContactExtra* extras) {
     extras_ = extras;
-    schedule_.build(sorter, ends, extras, list, count, bodies, cut, kernels_, scalar_);
+    schedule_.build(sorter, ends, extras, list, count.rows, bodies, cut, kernels_, scalar_);
     bouncing_.clear();
-    for (int i = 0; i < count; ++i)
-        if (ends[i].bounces) bouncing_.push_back(BouncingContact(list[i]));
+    impact_ends_.clear();
+    for (int i = 0; i < count.all; ++i) {
+        if (!ends[i].bounces) continue;
+        bouncing_.push_back(BouncingContact(list[i]));
+        impact_ends_.push_back({ends[i].a, ends[i].b, ends[i].passes});
+    }
+    passing_ = count.all - count.rows;
     return schedule_.row_bytes;
 }
 
@@ -133,8 +138,10 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
     k.joints = !joints_.empty();
     for_each_tile(tasks, range, [&](int, BodyRange r) { kernels_.begin_step(bodies, r.begin, r.end); });
     tasks.for_each(bouncing_.count(), contacts_per_part, [&](int begin, int end, int) {
-        for (int i = begin; i < end; ++i) prepare_bouncing(bodies, records, bouncing_[static_cast<size_t>(i)]);
+        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i)
+            if (!impact_ends_[i].passes) prepare_bouncing(bodies, records, bouncing_[i]);
     });
+    if (passing_ > 0) disturbed_.assign(static_cast<size_t>(bodies.count), 0);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const SubstepConstants before = k;
         k.first = substep == 0;
@@ -148,7 +155,10 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
             if (!relaxed)
                 for_each_tile(tasks, range, [&](int tile, BodyRange) { pass_tile(tile, bodies, before, relax); });
             relaxed = true;
-            k.moved = resolve_impacts(bodies, records, {bouncing_.data(), bouncing_.count(), extras_}, k, substep);
+            if (passing_ > 0 && !k.first) mark_disturbed(bodies, range, disturbed_.data());
+            const BouncingList list{bouncing_.data(), impact_ends_.data(), bouncing_.count(), extras_,
+                                    passing_ > 0 ? disturbed_.data() : nullptr};
+            k.moved = resolve_impacts(bodies, records, list, k, substep);
         }
         for_each_tile(tasks, range, [&](int tile, BodyRange r) {
             if (!relaxed) pass_tile(tile, bodies, before, relax);
@@ -184,9 +194,14 @@ void Solver::coast(TaskPool& tasks, const SolverSettings& settings, SolverBodies
     });
 }
 
-void Solver::store(TaskPool& tasks, ContactRecord* records) {
+void Solver::store(TaskPool& tasks, const SolverBodies& bodies, ContactRecord* records) {
     for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
         kernels.store(g, records, begin, end);
+    });
+    const int first = bouncing_.count() - passing_;
+    tasks.for_each(passing_, contacts_per_part, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i)
+            follow_passing(bodies, records[bouncing_[static_cast<size_t>(first + i)].record]);
     });
 }
 

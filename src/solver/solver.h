@@ -35,26 +35,36 @@ inline constexpr float bounce_threshold_substeps = 4.0f;
 
 SubstepConstants substep_constants(const SolverSettings& settings);
 
+// Of manifolds, all, and the first that get rows; those after them are left to impacts.
+struct ContactCount {
+    int all, rows;
+    ContactCount(int with_rows) : all(with_rows), rows(with_rows) {}
+    ContactCount(int number, int with_rows) : all(number), rows(with_rows) {}
+};
+
 class Solver {
 public:
     Solver(const Memory* memory, int width)
         : schedule_(memory),
           bouncing_(memory),
+          impact_ends_(memory),
+          disturbed_(memory),
           joints_(memory, width),
           kernels_(solver_kernels(width)),
           scalar_(solver_kernels(1)) {}
 
-    // Colours `count` manifolds by their ends; `list` names their records. `extras`, by record: see ContactExtra; null
-    // where no material has any. `cut`: of the bodies that solve() is given. Returns the bytes of rows that prepare()
-    // is to be given.
+    // Colours manifolds by their ends; `list` names their records. `extras`, by record: see ContactExtra; null where no
+    // material has any. `cut`: of the bodies that solve() is given. Returns the bytes of rows that prepare() is to be
+    // given.
     size_t schedule(ColourSorter& sorter, const SolverBodies& bodies, const ContactEnds* ends, const uint32_t* list,
-                    int count, const ContactCut& cut = {}, ContactExtra* extras = nullptr);
+                    ContactCount count, const ContactCut& cut = {}, ContactExtra* extras = nullptr);
     // Packs them into rows, memory aligned to Memory::alignment that must stay until store(). `records` as before.
     void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, std::byte* rows);
     // So that contacts of `other` may become this one's without asking for memory; before schedule().
     void make_room(const Solver& other) {
         schedule_.make_room(other.schedule_);
         bouncing_.reserve(bouncing_.size() + other.bouncing_.size());
+        impact_ends_.reserve(bouncing_.size() + other.bouncing_.size());
     }
     // Takes memory for so many entries of bodies, contacts, and joints; before schedule().
     void make_ready(size_t bodies, size_t contacts, size_t joints) {
@@ -76,7 +86,7 @@ public:
     // Bodies of the range, of which no contact and no joint knows, take all of settings.dt at once.
     void coast(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, BodyRange range) const;
     // Writes impulses and final separations back.
-    void store(TaskPool& tasks, ContactRecord* records);
+    void store(TaskPool& tasks, const SolverBodies& bodies, ContactRecord* records);
     // Writes impulses back into the joints given to prepare_joints().
     void store_joints(TaskPool& tasks) { joints_.store(tasks); }
 
@@ -110,6 +120,9 @@ private:
 
     ColourSchedule schedule_;
     Array<BouncingContact> bouncing_;
+    Array<ImpactEnds> impact_ends_;  // of these
+    int passing_ = 0;                // how many of these pass: the last
+    Array<uint8_t> disturbed_;       // by body, see BouncingList
     const ContactExtra* extras_ = nullptr;
     JointSolver joints_;
     const SolverKernels& kernels_;

@@ -152,31 +152,31 @@ void tie_kinematic(WorldData& world) {
         if (e.fixed_a) world.solver_bodies.motion[static_cast<size_t>(e.a)].free = 0.0f;
 }
 
-// The active contacts by class, stably: most often there is but one.
+// The active contacts by class, and in each those that pass last; stably. Most often there is but one class.
 void sort_by_class(WorldData& world) {
-    int counts[substep_classes] = {}, first = 0;
+    int counts[2 * substep_classes] = {}, first = 0;
     auto class_of = [&](const ContactEnds& e) {
         int c = 0;
         while (e.b >= world.parts[c].bodies.end) ++c;
         return c;
     };
-    if (world.hard_bodies == 0) counts[0] = world.active.count();
-    else
-        for (const ContactEnds& e : world.active_ends) ++counts[class_of(e)];
+    auto list_of = [&](const ContactEnds& e) { return 2 * (world.hard_bodies == 0 ? 0 : class_of(e)) + e.passes; };
+    for (const ContactEnds& e : world.active_ends) ++counts[list_of(e)];
     for (int c = 0; c < substep_classes; ++c) {
-        world.parts[c].first_contact = first;
-        world.parts[c].contact_count = counts[c];
-        first += counts[c];
+        SolverPart& part = world.parts[c];
+        part.first_contact = first;
+        part.row_count = counts[2 * c];
+        part.contact_count = counts[2 * c] + counts[2 * c + 1];
+        counts[2 * c] = first, counts[2 * c + 1] = first + part.row_count;
+        first += part.contact_count;
     }
-    if (counts[0] == first) return;
+    if (world.parts[0].row_count == first) return;
     world.unsorted.swap(world.active);
     world.unsorted_ends.swap(world.active_ends);
     world.active.resize_unset(world.unsorted.size());
     world.active_ends.resize_unset(world.unsorted.size());
-    for (int& n : counts) n = 0;
     for (size_t i = 0; i < world.unsorted.size(); ++i) {
-        const int c = class_of(world.unsorted_ends[i]);
-        const auto k = static_cast<size_t>(world.parts[c].first_contact + counts[c]++);
+        const auto k = static_cast<size_t>(counts[list_of(world.unsorted_ends[i])]++);
         world.active[k] = world.unsorted[i];
         world.active_ends[k] = world.unsorted_ends[i];
     }
@@ -226,7 +226,7 @@ void pack_contacts(WorldData& world) {
     world.tasks.for_each(ends.count(), contacts_per_task, [&](int begin, int end, int) {
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
             const TouchingBodies& t = world.active_bodies[i];
-            ends[i] = {place_of(t.a), place_of(t.b), t.kind, t.fixed_a, t.bounces, t.impulse == 0.0f};
+            ends[i] = {place_of(t.a), place_of(t.b), t.kind, t.fixed_a, t.bounces, t.impulse == 0.0f, t.passes};
         }
     });
     sort_by_class(world);

@@ -50,7 +50,7 @@ void place_bodies(WorldData& world, float dt) {
 void cut_contacts(WorldData& world) {
     for (SolverPart& part : world.parts) {
         const Tiles tiles(part.bodies);
-        const bool within = lie_within(tiles, world.active_ends.data() + part.first_contact, part.contact_count);
+        const bool within = lie_within(tiles, world.active_ends.data() + part.first_contact, part.row_count);
         part.cut = {within ? tiles : Tiles{}, {0, 0}};
         if (part.cut.tiles.count == 1 && world.tasks.workers() > 1) part.cut.near = part.bodies;
     }

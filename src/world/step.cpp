@@ -40,7 +40,8 @@ void prepare_solvers(WorldData& world, float dt) {
         first[c] = bytes;
         bytes += world.solvers[c].schedule(world.schedule_room.sorter, world.solver_bodies,
                                            world.active_ends.data() + part.first_contact,
-                                           world.active.data() + part.first_contact, part.contact_count, part.cut,
+                                           world.active.data() + part.first_contact,
+                                           {part.contact_count, part.row_count}, part.cut,
                                            world.has_extras ? world.extras.data() : nullptr);
         // Islands go up by any number of classes and come down one by one, also long after all has come to rest.
         if (c > 0 && part.contact_count > 0) world.solvers[c - 1].make_room(world.solvers[c]);
@@ -92,7 +93,7 @@ void step(WorldData& world, float dt, bool last) {
     world.solvers[0].coast(world.tasks, settings, world.solver_bodies, world.alone);
     clock.lap(Stage::solve);
     for (Solver& solver : world.solvers) {
-        solver.store(world.tasks, world.records.data());
+        solver.store(world.tasks, world.solver_bodies, world.records.data());
         solver.store_joints(world.tasks);
     }
     unpack_contacts(world);

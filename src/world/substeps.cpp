@@ -210,6 +210,14 @@ void tie_other_joints(WorldData& world) {
     }
 }
 
+// Whether gravity alone changes how the body moves, as what the narrow phase foresees takes it.
+bool moves_freely(const WorldData& world, uint32_t slot) {
+    constexpr float most_damping = 1.0f;  // 1/s: within the step what it takes from a way is less than the margin
+    const BodyInfo& info = world.bodies.info[slot];
+    return !info.has_forces && absolute(info.gravity_factor) <= 1.0f && info.linear_damping <= most_damping &&
+           world.joints.first_of(slot) == no_joint_link;
+}
+
 // Reads what is asked of the records below, where workers can share it.
 void survey_contacts(WorldData& world) {
     world.tasks.for_each(world.touching.count(), contacts_per_task, [&](int begin, int end, int) {
@@ -222,6 +230,7 @@ void survey_contacts(WorldData& world) {
             t.impulse = impulse_of(r);
             t.a_above = dot(Vec3{r.normal[0], r.normal[1], r.normal[2]}, world.config.gravity) > 0.0f;
             t.bounces = r.restitution > 0.0f || (r.flags & contact_swift) != 0;
+            t.passes = t.bounces && (r.flags & contact_passes) != 0 && moves_freely(world, t.a) && moves_freely(world, t.b);
             t.kind = contact_kind(r);
         }
     });

@@ -76,6 +76,7 @@ struct TouchingBodies {
     bool fixed_a;
     bool a_above;  // gravity presses A on B
     bool bounces;
+    bool passes;   // see contact_passes; not where forces may move the bodies otherwise
     uint8_t kind;  // see contact_kind()
 };
 
@@ -108,7 +109,8 @@ struct BodyPair {
 struct SolverPart {
     BodyRange bodies;
     ContactCut cut;
-    int first_contact, contact_count;
+    int first_contact, contact_count;  // those that pass last
+    int row_count;                     // of the others
     int first_joint, joint_count;
 };
 

@@ -53,7 +53,7 @@ LENDULET_FORCE_INLINE void store_manifolds(BatchManifold* out, const int32_t* in
 }
 static_assert(offsetof(BatchManifold, id) == 20 * sizeof(float) &&
               offsetof(BatchManifold, count) == 24 * sizeof(float) &&
-              offsetof(BatchManifold, unused) == 27 * sizeof(float));
+              offsetof(BatchManifold, passes) == 27 * sizeof(float));
 
 // One block of a list: the pairs, and their boxes with the reference box first.
 template <int W>

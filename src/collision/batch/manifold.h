@@ -16,7 +16,7 @@ struct alignas(64) BatchManifold {
     uint32_t id[4];
     int32_t count;             // 0: the features that face each other do not overlap, or they are beyond the margin
     float radius_a, radius_b;  // see Manifold
-    uint32_t unused;
+    float passes;              // 1: moving on as they do, the two do not touch within the step
 };
 static_assert(sizeof(BatchManifold) == 128);
 

@@ -47,11 +47,48 @@ LENDULET_FORCE_INLINE Vec3T<F> offset_between(const WideRound<F>& a, const WideR
     return between_centres(a.centre, a.low, b.centre, b.low) + (b.arm - a.arm);
 }
 
+// x / y, or 0 where y is not positive.
+template <class F>
+LENDULET_FORCE_INLINE F ratio_or_zero(F x, F y) {
+    auto positive = y > splat<F>(0.0f);
+    return select(positive, x / select(positive, y, splat<F>(1.0f)), splat<F>(0.0f));
+}
+
+// How bodies move against each other within the step, by which most pairs that might touch by their speed do not: what
+// leaves or passes by.
+template <class F>
+struct WideWay {
+    Vec3T<F> way;
+    F near;  // what is closer than this may touch whichever way bodies go: points are wanted, and gravity and turning
+    LENDULET_FORCE_INLINE WideWay(const WideRound<F>& a, const WideRound<F>& b, float dt, float fall)
+        : way(splat<F>(dt) * Vec3T<F>{b.velocity[0] - a.velocity[0], b.velocity[1] - a.velocity[1],
+                                      b.velocity[2] - a.velocity[2]}),
+          near(minimum(a.near, b.near) + splat<F>(fall) + (turning_of(a) + turning_of(b))) {}
+    // A ball that turns about its middle stays where it is.
+    LENDULET_FORCE_INLINE static F turning_of(const WideRound<F>& r) {
+        auto turns_within = dot(r.arm, r.arm) + dot(r.half, r.half) <= splat<F>(1e-10f) * r.rounding * r.rounding;
+        return select(turns_within, splat<F>(0.0f), r.velocity[3]);
+    }
+
+    // Of convex shapes this far apart along a line from A to B: while they are so along it, they do not touch.
+    LENDULET_FORCE_INLINE auto may_touch(Vec3T<F> normal, F separation) const {
+        return separation <= near + maximum(splat<F>(0.0f), -dot(way, normal));
+    }
+    // Of two balls: their distance where they come nearest.
+    LENDULET_FORCE_INLINE auto balls_may_touch(Vec3T<F> between, F radii) const {
+        const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
+        const F part = minimum(one, maximum(zero, ratio_or_zero(-dot(between, way), dot(way, way))));
+        const Vec3T<F> nearest = between + part * way;
+        const F reach = radii + near;
+        return dot(nearest, nearest) <= reach * reach;
+    }
+};
+
 // What one block of pairs gives. Positions from the shape of A, as the block has it.
 template <class F>
 struct RoundManifold {
     Vec3T<F> normal, position[2];
-    F separation[2], follow, count;
+    F separation[2], follow, count, passes;
 };
 
 template <int W>
@@ -84,6 +121,7 @@ LENDULET_FORCE_INLINE void store_round(BatchManifold* out, const RoundBatch& bat
         to.id[0] = to.id[2] = to.id[3] = 0, to.id[1] = lane(m.count, l) > 1.0f ? 1 : 0;
         to.count = static_cast<int32_t>(lane(m.count, l));
         to.radius_a = lane(radius_a, l), to.radius_b = lane(radius_b, l);
+        to.passes = lane(m.passes, l);
     }
 }
 
@@ -97,12 +135,6 @@ LENDULET_FORCE_INLINE void fill_block(RoundBatch& batch, int k) {
 template <class F>
 LENDULET_FORCE_INLINE F clamp_unit(F x) {
     return maximum(splat<F>(-1.0f), minimum(splat<F>(1.0f), x));
-}
-// x / y, or 0 where y is not positive.
-template <class F>
-LENDULET_FORCE_INLINE F ratio_or_zero(F x, F y) {
-    auto positive = y > splat<F>(0.0f);
-    return select(positive, x / select(positive, y, splat<F>(1.0f)), splat<F>(0.0f));
 }
 template <class F>
 LENDULET_FORCE_INLINE Vec3T<F> any_perpendicular(Vec3T<F> n) {
@@ -188,7 +220,10 @@ void collide_segments(RoundBatch& batch, BatchManifold* out) {
         m.normal = select(apart, (one / select(apart, distance, one)) * between, out_of);
         m.separation[0] = distance - radii;
         m.position[0] = on_a + (a.rounding + half * m.separation[0]) * m.normal;
+        const WideWay<F> way(a, b, batch.dt, batch.fall);
         m.count = select(m.separation[0] <= margin, one, zero);
+        m.passes = select(straight, select(way.may_touch(m.normal, m.separation[0]), zero, one),
+                          select(way.balls_may_touch(p.offset, radii), zero, one));
         auto inside = (absolute(p.s) < one) & (absolute(p.t) < one) & (area > splat<F>(0.01f) * p.aa * p.bb);
         m.follow = select(inside, half, a.rounding / radii);
         m.position[1] = zero_vector<F>(), m.separation[1] = zero;
@@ -233,7 +268,9 @@ void collide_box_balls(RoundBatch& batch, BatchManifold* out) {
         m.normal = turned(direction);
         m.separation[0] = select(outside, distance, -least) - radii;
         m.position[0] = turned(on_box) + (a.rounding + half * m.separation[0]) * m.normal;
+        const WideWay<F> way(a, b, batch.dt, batch.fall);
         m.count = select(m.separation[0] <= margin, one, zero);
+        m.passes = select(way.may_touch(m.normal, m.separation[0]), zero, one);
         m.follow = select(outside, select(axes == one, one, on_edge), one);
         m.position[1] = zero_vector<F>(), m.separation[1] = zero;
         store_round<W>(out, batch, k, a, b, m);

@@ -171,7 +171,7 @@ private:
             kept.pose[k] = scratch_.motion.pose[i];
             kept.record[k] = static_cast<int32_t>(p.first_record + m);
             ContactRecord& r = world_.records[p.first_record + m];
-            r.flags &= ~contact_swift;
+            r.flags &= ~(contact_swift | contact_passes);
             if (scale_ != 1.0f) scale_impulses(r, scale_);
         }
     }
@@ -222,7 +222,12 @@ private:
         }
         r.pair = index;
         tell_speed(p, r, a, b);
+        const bool past = passes(manifold);
+        r.flags = past ? r.flags | contact_passes : r.flags & ~contact_passes;
+        if (past) clear_impulses(r);
     }
+    static bool passes(const Manifold&) { return false; }
+    static bool passes(const BatchManifold& m) { return m.passes > 0.0f; }
 
     // Bodies whose arms stay are those whose surface the points ride on.
     void tell_speed(const ColliderPair& p, ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b) const {
@@ -371,7 +376,7 @@ void list_contacts(WorldData& world) {
         for (uint32_t k = 0; k < p.count; ++k) {
             rest.place[p.first_record + k] = static_cast<uint32_t>(world.touching.size());
             world.touching.push_back(p.first_record + k);
-            world.touching_bodies.push_back({p.body_a, p.body_b, 0.0f, p.fixed_a, false, false, 0});
+            world.touching_bodies.push_back({p.body_a, p.body_b, 0.0f, p.fixed_a, false, false, false, 0});
         }
         if (p.hit) add_overlap(world, p);
     }
