@@ -365,7 +365,12 @@ void follow_passing(const SolverBodies& bodies, ContactRecord& r) {
         const Vec3 ra = load(p.position), half_gap = (0.5f * p.separation) * n;
         const Vec3 core_a = ra - half_gap - r.radius_a * n, core_b = ra - offset + half_gap + r.radius_b * n;
         const Vec3 shift = (load(b.dp) + turned(b, core_b)) - (load(a.dp) + turned(a, core_a));
-        p.separation += dot(n, shift);
+        if ((r.flags & contact_balls) != 0) {
+            const float radii = r.radius_a + r.radius_b;
+            p.separation = length((p.separation + radii) * n + shift) - radii;
+        } else {
+            p.separation += dot(n, shift);
+        }
     }
 }
 

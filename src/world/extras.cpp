@@ -13,8 +13,8 @@ void pack_extra(WorldData& world, uint32_t record, float h) {
     const ExtraSurface s = combine_extra(c.surface_at(p.a, r.triangle), c.surface_at(p.b, r.triangle));
     ContactExtra& e = world.extras[record];
     const uint32_t step = static_cast<uint32_t>(world.steps);
-    const bool same = e.pair == r.pair && e.key == r.key && e.step == step && e.h > 0.0f &&
-                      (r.flags & contact_passes) == 0;
+    const bool same =
+        e.pair == r.pair && e.key == r.key && e.step == step && e.h > 0.0f && (r.flags & contact_passes) == 0;
     const float scale = same ? h / e.h : 0.0f;
     for (float& x : e.impulse) x = scale > 0.0f ? scale * x : 0.0f;
     e.rolling = s.rolling_friction;

@@ -38,11 +38,10 @@ void prepare_solvers(WorldData& world, float dt) {
     for (int c = substep_classes - 1; c >= 0; --c) {
         const SolverPart& part = world.parts[c];
         first[c] = bytes;
-        bytes += world.solvers[c].schedule(world.schedule_room.sorter, world.solver_bodies,
-                                           world.active_ends.data() + part.first_contact,
-                                           world.active.data() + part.first_contact,
-                                           {part.contact_count, part.row_count}, part.cut,
-                                           world.has_extras ? world.extras.data() : nullptr);
+        bytes += world.solvers[c].schedule(
+            world.schedule_room.sorter, world.solver_bodies, world.active_ends.data() + part.first_contact,
+            world.active.data() + part.first_contact, {part.contact_count, part.row_count}, part.cut,
+            world.has_extras ? world.extras.data() : nullptr);
         // Islands go up by any number of classes and come down one by one, also long after all has come to rest.
         if (c > 0 && part.contact_count > 0) world.solvers[c - 1].make_room(world.solvers[c]);
     }

@@ -230,7 +230,8 @@ void survey_contacts(WorldData& world) {
             t.impulse = impulse_of(r);
             t.a_above = dot(Vec3{r.normal[0], r.normal[1], r.normal[2]}, world.config.gravity) > 0.0f;
             t.bounces = r.restitution > 0.0f || (r.flags & contact_swift) != 0;
-            t.passes = t.bounces && (r.flags & contact_passes) != 0 && moves_freely(world, t.a) && moves_freely(world, t.b);
+            t.passes =
+                t.bounces && (r.flags & contact_passes) != 0 && moves_freely(world, t.a) && moves_freely(world, t.b);
             t.kind = contact_kind(r);
         }
     });

@@ -61,8 +61,8 @@ struct WideWay {
     Vec3T<F> way;
     F near;  // what is closer than this may touch whichever way bodies go: points are wanted, and gravity and turning
     LENDULET_FORCE_INLINE WideWay(const WideRound<F>& a, const WideRound<F>& b, float dt, float fall)
-        : way(splat<F>(dt) * Vec3T<F>{b.velocity[0] - a.velocity[0], b.velocity[1] - a.velocity[1],
-                                      b.velocity[2] - a.velocity[2]}),
+        : way(splat<F>(dt) *
+              Vec3T<F>{b.velocity[0] - a.velocity[0], b.velocity[1] - a.velocity[1], b.velocity[2] - a.velocity[2]}),
           near(minimum(a.near, b.near) + splat<F>(fall) + (turning_of(a) + turning_of(b))) {}
     // A ball that turns about its middle stays where it is.
     LENDULET_FORCE_INLINE static F turning_of(const WideRound<F>& r) {
