@@ -208,7 +208,7 @@ public:
     int contact_count() const;
     Contact contact(int index) const;
     // The colour in which the solver took each contact of the last step, by index: contacts of one colour share no body
-    // that they move. -1: not solved, since it rests. O(n).
+    // that they move. -1: not solved, since it rests or its bodies bounce and pass by each other in this step. O(n).
     std::vector<int> contact_colours() const;
     // A number that the bodies of an island had in common in the last step: those that touch or are joined and move.
     // -1 for bodies that rest, for static and for kinematic ones.
