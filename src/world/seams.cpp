@@ -166,9 +166,33 @@ void mark_covered(WorldData& world, ColliderPair& p) {
     }
 }
 
+void SeamList::clear() {
+    for (uint32_t collider : floored_) first_[collider] = none;
+    floored_.clear();
+    pairs_.clear();
+}
+
+void SeamList::add(uint32_t number, const ColliderPair& p) {
+    if (!has_floor(p)) return;
+    const uint32_t moved = moved_collider(p);
+    if (moved >= first_.size()) first_.resize(moved + 1, none);
+    uint32_t& first = first_[moved];
+    bool listed = true;
+    if (first == none) {
+        floored_.push_back(moved);
+        listed = p.covered;
+        first = listed ? several : number;
+    } else if (first != several) {
+        pairs_.push_back(first);
+        first = several;
+    }
+    if (listed) pairs_.push_back(number);
+}
+
 void silence_seams(WorldData& world) {
-    world.tasks.for_each(world.pairs.listed.count(), pairs_per_task, [&](int begin, int end, int) {
-        for (int i = begin; i < end; ++i) silence_pair(world, world.pairs.listed[static_cast<size_t>(i)].pair);
+    const Array<uint32_t>& pairs = world.seams.pairs();
+    world.tasks.for_each(pairs.count(), pairs_per_task, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) silence_pair(world, pairs[static_cast<size_t>(i)]);
     });
 }
 

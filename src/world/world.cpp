@@ -119,6 +119,7 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       island_parent(&memory),
       island_still(&memory),
       touched_sleepers(&memory),
+      seams(&memory),
       waking(&memory) {}
 
 Result<World> WorldBuilder::build() const {

@@ -21,6 +21,7 @@
 #include "world/narrow/kernels.h"
 #include "world/pairs.h"
 #include "world/queries/scene.h"
+#include "world/seams.h"
 
 namespace lendulet {
 
@@ -204,6 +205,7 @@ struct WorldData {
     Array<uint32_t> island_parent;  // union-find over body slots
     Array<float> island_still;
     Array<BodyPair> touched_sleepers;  // (who touches, sleeping body)
+    SeamList seams;
     Array<uint32_t> waking;
 
     float last_h = 0.0f;    // substep that the impulses of listed pairs belong to, s

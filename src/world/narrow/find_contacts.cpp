@@ -362,6 +362,7 @@ void list_contacts(WorldData& world) {
     RestingContacts& rest = world.resting;
     world.touching.clear();
     world.touching_bodies.clear();
+    world.seams.clear();
     if (rest.hits_changed) {
         world.overlaps.clear();
         for (uint32_t number : rest.hits) add_overlap(world, world.pairs.pairs[number]);
@@ -378,6 +379,7 @@ void list_contacts(WorldData& world) {
             world.touching.push_back(p.first_record + k);
             world.touching_bodies.push_back({p.body_a, p.body_b, 0.0f, p.fixed_a, false, false, false, 0});
         }
+        if (p.fixed_a) world.seams.add(listed[i].pair, p);
         if (p.hit) add_overlap(world, p);
     }
 }
@@ -397,6 +399,7 @@ void find_contacts(WorldData& world, float dt) {
     for (Array<TouchingBodies>* list : {&world.touching_bodies, &world.active_bodies})
         list->reserve(world.records.capacity());
     world.touched_sleepers.reserve(world.records.capacity());
+    world.seams.reserve(world.frames.size(), world.records.capacity());
     world.narrow_scratch.resize_unset(static_cast<size_t>(world.tasks.workers()));
     for (NarrowScratch& s : world.narrow_scratch) s.contact_points = 0, s.max_penetration = 0.0f;
     int count = world.pairs.listed.count();
@@ -407,8 +410,8 @@ void find_contacts(WorldData& world, float dt) {
         for (int i = begin; i < end; i += batch_capacity)
             chunk.run(i, end - i < batch_capacity ? end : i + batch_capacity);
     });
-    silence_seams(world);
     list_contacts(world);
+    silence_seams(world);
     world.awake_points = 0;
     world.awake_penetration = 0.0f;
     for (const NarrowScratch& s : world.narrow_scratch) {
