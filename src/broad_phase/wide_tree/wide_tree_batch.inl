@@ -80,13 +80,23 @@ private:
         return node;
     }
     // The children of the blocks in list `level`, which are those of level - 1, to the list below.
-    void descend(int level) {
+    [[gnu::noinline]] void descend(int level) {
         List &from = lists_[level], &to = lists_[level - 1];
+        for (int i = 0; i < from.count;) {
+            i = test(level, i);
+            if (to.count > List::most - block_lanes) level > 1 ? descend(level - 1) : look();
+        }
+        from.count = 0;
+    }
+    // From entry i on, until the list below is full; gives the entry to go on with.
+    int test(int level, int i) {
+        const List& from = lists_[level];
+        List& to = lists_[level - 1];
         const BoundsBlock* blocks = tree_.blocks + tree_.first_block[level - 1];
-        const int entries = from.count;
-        int found = to.count;  // in a register: each entry waits for the number of the one before
         const uint32_t own_lanes = level == 1 && Search::skips_own ? static_cast<uint32_t>(lanes_of<F>) : 0;
-        for (int i = 0; i < entries; ++i) {
+        uint32_t* next = to.at + to.count;  // in a register: each entry waits for the one before
+        const uint32_t* const full = to.at + (List::most - block_lanes);
+        for (const int entries = from.count; i < entries && next <= full; ++i) {
             const int row = row_of(from.at[i]), node = node_of(from.at[i]);
             Spread<F> box = spread<F>(rows_[row]);
             for (int k = 0; k < block_lanes; k += lanes_of<F>) {
@@ -95,16 +105,12 @@ private:
                     const uint32_t own = rows_[row].index - static_cast<uint32_t>(node * block_lanes + k);
                     lanes &= ~(uint32_t{own < own_lanes} << own % 32);
                 }
-                store_numbers<F>(to.at + found, lanes, entry(row, node * block_lanes + k));
-                found += __builtin_popcount(lanes);
+                store_numbers<F>(next, lanes, entry(row, node * block_lanes + k));
+                next += __builtin_popcount(lanes);
             }
-            if (found <= List::most - block_lanes) continue;
-            to.count = found;
-            level > 1 ? descend(level - 1) : look();
-            found = 0;
         }
-        to.count = found;
-        from.count = 0;
+        to.count = static_cast<int>(next - to.at);
+        return i;
     }
     void look() {
         static_cast<Search&>(*this).look(lists_[0]);

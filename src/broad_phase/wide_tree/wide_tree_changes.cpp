@@ -5,6 +5,7 @@
 #include "base/prefetch.h"
 #include "broad_phase/block.h"
 #include "broad_phase/wide_tree/wide_tree_set.h"
+#include "math/unbranched.h"
 #include "math/wide/quads.h"
 
 namespace lendulet {
@@ -101,7 +102,7 @@ void WideTreeSet::mark(const uint32_t* places, int count, Array<uint32_t>& unbou
             continue;
         }
         *next = group;  // whether it is new there is not to be foreseen
-        next += changed_[group] == 0;
+        next += one_if(changed_[group] == 0);
         changed_[group] |= uint64_t{1} << lane % group_lanes;
         ++marks_;
     }
@@ -118,7 +119,7 @@ void WideTreeSet::list_marks() {
         size_t n = 0;
         for (size_t g = 0; g < groups_.size(); ++g) {
             touched_[n] = static_cast<uint32_t>(g);
-            n += changed_[g] != 0;
+            n += one_if(changed_[g] != 0);
         }
         touched_.resize_unset(n);
     }
@@ -129,7 +130,7 @@ void WideTreeSet::list_marks() {
         uint64_t left = changed_[g];
         auto list = [&] {
             *next = g * group_lanes + static_cast<uint32_t>(__builtin_ctzll(left | uint64_t{1} << 63));
-            next += left != 0;
+            next += one_if(left != 0);
             left &= left - 1;
         };
         for (int i = 0; i < usual; ++i) list();
@@ -264,7 +265,7 @@ void WideTreeSet::widen() {
         *shrunk = g;
         const uint8_t loosened = loosened_[g] + ((mask_bits(inwards) & 7) != 0);
         loosened_[g] = loosened;
-        shrunk += loosened >= most_loosened;
+        shrunk += one_if(loosened >= most_loosened);
         set_bounds(0, g, {{lowest[0], lowest[1], lowest[2], highest[0], highest[1], highest[2]}});
     }
     shrunk_.resize_unset(static_cast<size_t>(shrunk - shrunk_.data()));

@@ -44,36 +44,47 @@ private:
 
     // Their own groups first, whose frames their steps are in already.
     void look_in_own() {
+        uint64_t lanes[Base::most_rows];
         for (int i = 0; i < count_; ++i) {
             const uint32_t g = this->rows_[i].index, lane = this->rows_[i].unused;
             const uint64_t steps = changes_.steps[first_ + i].around;
-            uint64_t lanes = may_overlap<F>(this->tree_.coarse[g], (Bytes16)Wide<uint64_t, 2>{steps, steps});
-            lanes &= ~(changes_.changed[g] & (all_lanes >> (group_lanes - 1 - lane)));
-            note(Base::entry(i, static_cast<int>(g)), lanes);
+            lanes[i] = may_overlap<F>(this->tree_.coarse[g], (Bytes16)Wide<uint64_t, 2>{steps, steps});
+            lanes[i] &= ~(changes_.changed[g] & (all_lanes >> (group_lanes - 1 - lane)));
         }
+        for (int i = 0; i < count_; ++i) note(Base::entry(i, static_cast<int>(this->rows_[i].index)), lanes[i]);
     }
 
     void look(const List& list) {
+        uint64_t lanes[List::most + block_lanes];
+        in_moving_ ? test<true>(list, lanes) : test<false>(list, lanes);
+        for (int i = 0; i < list.count; ++i) note(list.at[i], lanes[i]);
+    }
+
+    // The lanes that may meet, for each entry.
+    template <bool InMoving>
+    void test(const List& list, uint64_t* lanes) {
         const CoarseBoxes* groups = this->tree_.coarse;
-        for (int i = 0; i < list.count; ++i) {
+        const uint64_t* changed = changes_.changed;
+        const bool far = far_;
+        for (int i = 0, count = list.count; i < count; ++i) {
             const uint32_t entry = list.at[i];
-            if (far_ && i + ahead < list.count)
+            if (far && i + ahead < count)
                 prefetch<sizeof(CoarseBoxes) / 64>(&groups[Base::node_of(list.at[i + ahead])]);
             const BroadBox& row = this->rows_[Base::row_of(entry)];
             const auto g = static_cast<uint32_t>(Base::node_of(entry));
-            uint64_t lanes = may_overlap<F>(groups[g], steps_of(groups[g], row));
-            if (in_moving_) lanes &= ~(changes_.changed[g] & (uint64_t{0} - (g < row.index)));
-            note(entry, lanes);
+            lanes[i] = may_overlap<F>(groups[g], steps_of(groups[g], row));
+            if constexpr (InMoving) lanes[i] &= ~(changed[g] & (uint64_t{0} - (g < row.index)));
         }
     }
 
-    // Mostly there are one or two or none; a loop would end where the machine does not expect it.
+    // Mostly there are one or two or none; a loop would end where the machine does not expect it. It notices late where
+    // that depends on a test that has just begun, so all tests of a list come first.
     LENDULET_FORCE_INLINE void note(uint32_t entry, uint64_t lanes) {
         const Candidate base = uint64_t{entry} << lane_bits;
         Candidate* next = next_;
         auto lowest = [&] {
             *next = base + lowest_lane(lanes);
-            next += lanes != 0;
+            next += one_if(lanes != 0);
             lanes &= lanes - 1;
         };
         lowest();
@@ -112,9 +123,9 @@ private:
                 const bool was = meet(mine.before, *before), is = meet(mine.after, *after);
                 const uint32_t a = mine.after.index, b = after->index;
                 // Begun pairs ascend, ended ones descend; which it is cannot be foreseen.
-                const uint32_t swapped = (a ^ b) & (0u - static_cast<uint32_t>((a < b) != is));
+                const uint32_t swapped = (a ^ b) & (0u - static_cast<uint32_t>(one_if((a < b) != is)));
                 *next = {a ^ swapped, b ^ swapped};
-                next += was != is;
+                next += one_if(was != is);
             }
             out_.next = next;
         }
