@@ -72,6 +72,13 @@ public:
 private:
     static constexpr uint32_t beside = 1u << 31;  // in lane_of_: the rest counts in the list of unbounded boxes
 
+    // What the rows of one group come to together.
+    struct alignas(16) GroupMove {
+        Wide<float, 4> lower_before, upper_before, lower_after, upper_after;  // the box around all; the fourth is none
+        uint64_t lanes;
+        uint32_t group, first_row;
+    };
+
     void fill_groups(const BroadBox* boxes, TaskPool* tasks);
     void plan_levels(int first_cleared);
     void set_bounds(int level, uint32_t child, const Bounds6& bounds);
@@ -120,6 +127,7 @@ private:
     Array<WideTreeChange> rows_;
     Array<uint32_t> row_lane_;
     Array<StepsOfTwo> row_steps_;
+    Array<GroupMove> moves_;
 };
 
 }  // namespace lendulet
