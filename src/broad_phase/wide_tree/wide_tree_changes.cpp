@@ -140,14 +140,15 @@ void WideTreeSet::list_marks() {
     for (int i = 0; i < ahead && marks_ > 0; ++i) next[i] = next[-1];
 }
 
-// Of whole groups, so that no group waits with one changed box while another is searched. What the rows need lies
+// Of whole groups, so that no group waits with one changed box while another is searched; `most` is at least as many as
+// a group has, and no batch has more, for a second search of the few behind would cost almost a whole one. What the rows need lies
 // scattered over the memory of both frames, and is asked for some rows ahead.
 bool WideTreeSet::next_batch(const BroadBox* boxes, int most, Array<uint32_t>& jumped) {
     if (begun_marks_ == marks_) return false;
     const uint32_t* marked = marked_lane_.data();
     const int begin = begun_marks_;
     int end = marks_ - begin > most ? begin + most : marks_;
-    while (end < marks_ && marked[end] / group_lanes == marked[end - 1] / group_lanes) ++end;
+    while (end < marks_ && marked[end] / group_lanes == marked[end - 1] / group_lanes) --end;
     begun_marks_ = end;
     first_touched_ = end_touched_;
     while (end_touched_ < touched_.size() && touched_[end_touched_] <= marked[end - 1] / group_lanes) ++end_touched_;

@@ -47,7 +47,7 @@ public:
     // 2. Marks boxes that change, once. Appends those that are unbounded to `unbounded` instead: they are to be removed
     // and inserted.
     void mark(const uint32_t* places, int count, Array<uint32_t>& unbounded);
-    // 3. Collects the next of the marked boxes, of about `most`, before and after, `boxes` being the new array; they
+    // 3. Collects the next of the marked boxes, at most `most` >= group_lanes, before and after, `boxes` being the new array; they
     // get their new state, and all bounds hold both, so that their changes can be searched. False where none are left.
     // Appends the places of those that jump or become another box to `jumped`: they are no longer marked, but to be
     // removed and inserted.
