@@ -48,12 +48,16 @@ protected:
 
     void run(int count) {
         if (tree_.group_count == 0) return;
-        int level = tree_.levels;
-        const int top = common_node(count, level);
-        List& list = lists_[level];
-        for (int i = 0; i < count; ++i) list.at[i] = entry(i, top);
-        list.count = count;
-        for (; level > 0; --level) descend(level);
+        int highest = 1;
+        for (int begin = 0; begin < count; begin += rows_together) {
+            const int end = count - begin < rows_together ? count : begin + rows_together;
+            int level = tree_.levels;
+            const int top = common_node(begin, end, level);
+            List& list = lists_[level];
+            for (int i = begin; i < end; ++i) list.at[list.count++] = entry(i, top);
+            highest = level > highest ? level : highest;
+        }
+        for (int level = highest; level > 0; --level) descend(level);
         look();
     }
 
@@ -61,12 +65,13 @@ protected:
     BroadBox rows_[most_rows];
 
 private:
-    // The lowest block that holds all that the rows may be near, and its level: rows that lie together share the way to
-    // there.
-    int common_node(int count, int& level) const {
+    // The lowest block that holds all that the rows [begin, end) may be near, and its level: rows that lie together
+    // share the way to there.
+    static constexpr int rows_together = 8;
+    int common_node(int begin, int end, int& level) const {
         if (level == 1) return 0;
-        Quad lower = load_wide<Quad>(rows_[0].lower), upper = load_wide<Quad>(rows_[0].upper);
-        for (int i = 1; i < count; ++i) {
+        Quad lower = load_wide<Quad>(rows_[begin].lower), upper = load_wide<Quad>(rows_[begin].upper);
+        for (int i = begin + 1; i < end; ++i) {
             lower = minimum(load_wide<Quad>(rows_[i].lower), lower);
             upper = maximum(load_wide<Quad>(rows_[i].upper), upper);
         }

@@ -141,8 +141,8 @@ void WideTreeSet::list_marks() {
 }
 
 // Of whole groups, so that no group waits with one changed box while another is searched; `most` is at least as many as
-// a group has, and no batch has more, for a second search of the few behind would cost almost a whole one. What the rows need lies
-// scattered over the memory of both frames, and is asked for some rows ahead.
+// a group has, and no batch has more, for a second search of the few behind would cost almost a whole one. What the
+// rows need lies scattered over the memory of both frames, and is asked for some rows ahead.
 bool WideTreeSet::next_batch(const BroadBox* boxes, int most, Array<uint32_t>& jumped) {
     if (begun_marks_ == marks_) return false;
     const uint32_t* marked = marked_lane_.data();
@@ -236,8 +236,8 @@ void WideTreeSet::extend_bounds(int level, uint32_t child, const BroadBox& box) 
     }
 }
 
-// The boxes of after into their lanes, with the steps of both states, and what is above made to hold both. How many rows
-// a group has is not to be foreseen, so what its rows come to together is written after each of them.
+// The boxes of after into their lanes, with the steps of both states, and what is above made to hold both. How many
+// rows a group has is not to be foreseen, so what its rows come to together is written after each of them.
 void WideTreeSet::widen() {
     row_steps_.resize_unset(rows_.size());
     kernels_.take_over(groups_.data(), coarse_.data(), rows_.data(), row_lane_.data(), rows_.count(),

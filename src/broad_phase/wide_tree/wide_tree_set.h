@@ -47,10 +47,10 @@ public:
     // 2. Marks boxes that change, once. Appends those that are unbounded to `unbounded` instead: they are to be removed
     // and inserted.
     void mark(const uint32_t* places, int count, Array<uint32_t>& unbounded);
-    // 3. Collects the next of the marked boxes, at most `most` >= group_lanes, before and after, `boxes` being the new array; they
-    // get their new state, and all bounds hold both, so that their changes can be searched. False where none are left.
-    // Appends the places of those that jump or become another box to `jumped`: they are no longer marked, but to be
-    // removed and inserted.
+    // 3. Collects the next of the marked boxes, at most `most` >= group_lanes, before and after, `boxes` being the new
+    // array; they get their new state, and all bounds hold both, so that their changes can be searched. False where
+    // none are left. Appends the places of those that jump or become another box to `jumped`: they are no longer
+    // marked, but to be removed and inserted.
     bool next_batch(const BroadBox* boxes, int most, Array<uint32_t>& jumped);
     WideTreeChanges changes() const;
     int changed_count() const { return rows_.count(); }
