@@ -15,8 +15,7 @@ LENDULET_FORCE_INLINE Spread<F> spread(const BroadBox& box) {
 }
 
 // Up to 64 boxes, the rows, and the tree they are searched in. Search::look(list) is given the groups near them; what
-// it sees of one row comes in the order of groups, wherever lists end, and that of earlier rows before that of later
-// ones.
+// it sees of one row comes in the order of groups, wherever lists end.
 //
 // A row may have a group of its own, rows_[i].index, which is not looked at with the others; no_box: none.
 template <class F, class Search>
