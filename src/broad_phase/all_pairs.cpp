@@ -1,5 +1,7 @@
 #include "broad_phase/all_pairs.h"
 
+#include <algorithm>
+
 #include "broad_phase/all_pairs_scan.h"
 
 namespace lendulet {
@@ -20,11 +22,11 @@ void AllPairs::set_moving(const BroadBox* boxes, int count, TaskPool*) {
 }
 
 void AllPairs::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
-    constexpr int grain = 64;
+    constexpr int grain = 8;  // blocks
     const AllPairsScan scan = all_pairs_scan();
-    chunks_.search(tasks, moving_.count(), grain, out, [&](int begin, int end, PairList& list) {
+    chunks_.search(tasks, moving_.blocks.count(), grain, out, [&](int begin, int end, PairList& list) {
         PairRoom room(list);
-        scan(scanned(moving_), scanned(fixed_), begin, end, room);
+        scan(scanned(moving_), scanned(fixed_), begin * block_size, std::min(end * block_size, moving_.count()), room);
     });
 }
 

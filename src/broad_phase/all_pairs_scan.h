@@ -15,7 +15,8 @@ struct ScannedBoxes {
     int index_step = block_size;  // from the indices of one block to those of the next
 };
 
-// Pairs of the boxes [begin, end) of `moving` with those before each and with all of `fixed`.
+// Pairs of the boxes [begin, end) of `moving` with those before each and with all of `fixed`. Whole blocks: `begin` is
+// a multiple of their size, `end` too or the count.
 using AllPairsScan = void (*)(const ScannedBoxes& moving, const ScannedBoxes& fixed, int begin, int end,
                               PairStream& out);
 

@@ -94,13 +94,15 @@ inline void clear_lane(BoxBlock& block, int lane) {
 
 inline bool is_empty(const BoxBlock& block, int lane) { return block.lower[0][lane] > block.upper[0][lane]; }
 
-inline void clear_lanes(BoxBlock& block) {
+// The four lanes from `first` on.
+inline void clear_half(BoxBlock& block, int first) {
     for (int d = 0; d < 3; ++d) {
-        for (int i = 0; i < block_size; i += 4) {
-            store_wide(block.lower[d] + i, splat<Float4>(infinity));
-            store_wide(block.upper[d] + i, splat<Float4>(-infinity));
-        }
+        store_wide(block.lower[d] + first, splat<Float4>(infinity));
+        store_wide(block.upper[d] + first, splat<Float4>(-infinity));
     }
+}
+inline void clear_lanes(BoxBlock& block) {
+    for (int i = 0; i < block_size; i += 4) clear_half(block, i);
 }
 
 // Index of the lowest set bit, which is cleared.

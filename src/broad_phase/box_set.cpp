@@ -12,11 +12,19 @@ void BoxSet::assign(const BroadBox* boxes, int count) {
     uint32_t* next_index = index.data();
     for (int left = count; left > 0; left -= block_size, ++block) {
         for (int half = 0; half < block_size; half += 4, boxes += 4, next_index += 4) {
+            if (half >= left) {
+                clear_half(*block, half);
+                break;
+            }
             Float4 low[4], high[4];
-            for (int i = 0; i < 4; ++i) {
-                const BroadBox& box = half + i < left ? boxes[i] : empty_box;
+            auto load = [&](int i, const BroadBox& box) {
                 low[i] = load_wide<Float4>(box.lower);
                 high[i] = load_wide<Float4>(box.upper);
+            };
+            if (half + 4 <= left) {
+                for (int i = 0; i < 4; ++i) load(i, boxes[i]);
+            } else {
+                for (int i = 0; i < 4; ++i) load(i, half + i < left ? boxes[i] : empty_box);
             }
             store_quad(*block, half, next_index, low, high);
         }

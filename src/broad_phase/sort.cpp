@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "math/unbranched.h"
+
 namespace lendulet {
 
 namespace {
@@ -109,10 +111,10 @@ void append_differences(const Array<uint64_t>& a, const Array<uint64_t>& b, Arra
         const uint64_t of_a = a[i], of_b = b[j];
         *next_a = pair_of(of_a);
         *next_b = pair_of(of_b);
-        next_a += of_a < of_b;
-        next_b += of_b < of_a;
-        i += of_a <= of_b;
-        j += of_b <= of_a;
+        next_a += one_if(of_a < of_b);
+        next_b += one_if(of_b < of_a);
+        i += one_if(of_a <= of_b);
+        j += one_if(of_b <= of_a);
     }
     for (; i < a.size(); ++i) *next_a++ = pair_of(a[i]);
     for (; j < b.size(); ++j) *next_b++ = pair_of(b[j]);

@@ -8,12 +8,13 @@ namespace lendulet {
 
 namespace {
 
-// A hundred keys are dealt to as many drawers as there are bits in a byte, by where they lie between the smallest and
-// the largest coordinate; that leaves little to repair. Does nothing where the coordinates are too far apart.
+// A hundred keys are dealt to one or two hundred drawers, by where they lie between the smallest and the largest
+// coordinate; that leaves little to repair. Does nothing where the coordinates are too far apart.
 constexpr size_t radix_pays_from = 400;
 void deal_into_drawers(Array<uint64_t>& keys, Array<uint64_t>& swap) {
-    constexpr int drawers = 256;
+    constexpr int most_drawers = 256;
     size_t n = keys.size();
+    const int drawers = n <= most_drawers / 2 ? most_drawers / 2 : most_drawers;
     uint64_t least = keys[0], most = keys[0];
     for (uint64_t key : keys) {
         least = key < least ? key : least;
@@ -27,10 +28,10 @@ void deal_into_drawers(Array<uint64_t>& keys, Array<uint64_t>& swap) {
         int d = static_cast<int>((float_of(static_cast<uint32_t>(key >> 32)) - from) * scale);
         return d < drawers ? d : drawers - 1;
     };
-    uint16_t place[drawers] = {};
+    uint16_t place[most_drawers] = {};
     for (uint64_t key : keys) ++place[drawer(key)];
     uint16_t begin = 0;
-    for (uint16_t& p : place) begin = static_cast<uint16_t>(begin + std::exchange(p, begin));
+    for (int d = 0; d < drawers; ++d) begin = static_cast<uint16_t>(begin + std::exchange(place[d], begin));
     swap.resize_unset(n);
     for (uint64_t key : keys) swap[place[drawer(key)]++] = key;
     keys.swap(swap);
@@ -41,13 +42,18 @@ void deal_into_drawers(Array<uint64_t>& keys, Array<uint64_t>& swap) {
 // Each is compared with each, four at a time, and goes where the number of smaller ones says: those of the same
 // coordinate count if their place is smaller. No branch depends on the keys.
 void IntervalOrder::sort_handful() {
-    using Int4 = Wide<int32_t, 4>;
-    constexpr size_t vectors = handful / 4;
     const size_t n = keys_.size();
     if (n < 2) return;
-    alignas(16) int32_t at[handful], smaller[handful];  // signed integers of the order of the coordinates
+    n <= 8 ? sort_fours<2>() : n <= 12 ? sort_fours<3>() : sort_fours<handful / 4>();
+}
+
+template <size_t vectors>
+void IntervalOrder::sort_fours() {
+    using Int4 = Wide<int32_t, 4>;
+    const size_t n = keys_.size();
+    alignas(16) int32_t at[4 * vectors], smaller[4 * vectors];  // signed integers of the order of the coordinates
     for (size_t i = 0; i < n; ++i) at[i] = static_cast<int32_t>((keys_[i] >> 32) ^ 0x80000000u);
-    for (size_t i = n; i < handful; ++i) at[i] = 0;
+    for (size_t i = n; i < 4 * vectors; ++i) at[i] = 0;
     // From where it is read for key j: -1 in the lanes behind it. There equal ones count: what is above other - 1.
     static constexpr int32_t behind[2 * handful] = {0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,  0,
                                                     -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};

@@ -41,6 +41,8 @@ private:
     static uint64_t key_of(float x, uint32_t place) { return uint64_t{ordered_bits(x)} << 32 | place; }
     static constexpr uint32_t handful = 16;  // so few are sorted anew faster than their order is kept
     void sort_handful();                     // of keys in the order of their places
+    template <size_t vectors>
+    void sort_fours();  // of at most four times as many
     void repair_or_sort();
 
     Array<uint64_t> keys_, swap_;  // coordinate << 32 | place

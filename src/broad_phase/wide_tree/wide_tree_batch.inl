@@ -15,8 +15,7 @@ LENDULET_FORCE_INLINE Spread<F> spread(const BroadBox& box) {
 }
 
 // Up to 64 boxes, the rows, and the tree they are searched in. Search::look(list) is given the groups near them; what
-// it sees of one row comes in the order of groups, wherever lists end, and that of earlier rows before that of later
-// ones.
+// it sees of one row comes in the order of groups, wherever lists end.
 //
 // A row may have a group of its own, rows_[i].index, which is not looked at with the others; no_box: none.
 template <class F, class Search>
@@ -48,12 +47,16 @@ protected:
 
     void run(int count) {
         if (tree_.group_count == 0) return;
-        int level = tree_.levels;
-        const int top = common_node(count, level);
-        List& list = lists_[level];
-        for (int i = 0; i < count; ++i) list.at[i] = entry(i, top);
-        list.count = count;
-        for (; level > 0; --level) descend(level);
+        int highest = 1;
+        for (int begin = 0; begin < count; begin += rows_together) {
+            const int end = count - begin < rows_together ? count : begin + rows_together;
+            int level = tree_.levels;
+            const int top = common_node(begin, end, level);
+            List& list = lists_[level];
+            for (int i = begin; i < end; ++i) list.at[list.count++] = entry(i, top);
+            highest = level > highest ? level : highest;
+        }
+        for (int level = highest; level > 0; --level) descend(level);
         look();
     }
 
@@ -61,12 +64,13 @@ protected:
     BroadBox rows_[most_rows];
 
 private:
-    // The lowest block that holds all that the rows may be near, and its level: rows that lie together share the way to
-    // there.
-    int common_node(int count, int& level) const {
+    // The lowest block that holds all that the rows [begin, end) may be near, and its level: rows that lie together
+    // share the way to there.
+    static constexpr int rows_together = 8;
+    int common_node(int begin, int end, int& level) const {
         if (level == 1) return 0;
-        Quad lower = load_wide<Quad>(rows_[0].lower), upper = load_wide<Quad>(rows_[0].upper);
-        for (int i = 1; i < count; ++i) {
+        Quad lower = load_wide<Quad>(rows_[begin].lower), upper = load_wide<Quad>(rows_[begin].upper);
+        for (int i = begin + 1; i < end; ++i) {
             lower = minimum(load_wide<Quad>(rows_[i].lower), lower);
             upper = maximum(load_wide<Quad>(rows_[i].upper), upper);
         }
@@ -80,13 +84,23 @@ private:
         return node;
     }
     // The children of the blocks in list `level`, which are those of level - 1, to the list below.
-    void descend(int level) {
+    [[gnu::noinline]] void descend(int level) {
         List &from = lists_[level], &to = lists_[level - 1];
+        for (int i = 0; i < from.count;) {
+            i = test(level, i);
+            if (to.count > List::most - block_lanes) level > 1 ? descend(level - 1) : look();
+        }
+        from.count = 0;
+    }
+    // From entry i on, until the list below is full; gives the entry to go on with.
+    int test(int level, int i) {
+        const List& from = lists_[level];
+        List& to = lists_[level - 1];
         const BoundsBlock* blocks = tree_.blocks + tree_.first_block[level - 1];
-        const int entries = from.count;
-        int found = to.count;  // in a register: each entry waits for the number of the one before
         const uint32_t own_lanes = level == 1 && Search::skips_own ? static_cast<uint32_t>(lanes_of<F>) : 0;
-        for (int i = 0; i < entries; ++i) {
+        uint32_t* next = to.at + to.count;  // in a register: each entry waits for the one before
+        const uint32_t* const full = to.at + (List::most - block_lanes);
+        for (const int entries = from.count; i < entries && next <= full; ++i) {
             const int row = row_of(from.at[i]), node = node_of(from.at[i]);
             Spread<F> box = spread<F>(rows_[row]);
             for (int k = 0; k < block_lanes; k += lanes_of<F>) {
@@ -95,16 +109,12 @@ private:
                     const uint32_t own = rows_[row].index - static_cast<uint32_t>(node * block_lanes + k);
                     lanes &= ~(uint32_t{own < own_lanes} << own % 32);
                 }
-                store_numbers<F>(to.at + found, lanes, entry(row, node * block_lanes + k));
-                found += __builtin_popcount(lanes);
+                store_numbers<F>(next, lanes, entry(row, node * block_lanes + k));
+                next += __builtin_popcount(lanes);
             }
-            if (found <= List::most - block_lanes) continue;
-            to.count = found;
-            level > 1 ? descend(level - 1) : look();
-            found = 0;
         }
-        to.count = found;
-        from.count = 0;
+        to.count = static_cast<int>(next - to.at);
+        return i;
     }
     void look() {
         static_cast<Search&>(*this).look(lists_[0]);

@@ -5,6 +5,7 @@
 #include "base/prefetch.h"
 #include "broad_phase/block.h"
 #include "broad_phase/wide_tree/wide_tree_set.h"
+#include "math/unbranched.h"
 #include "math/wide/quads.h"
 
 namespace lendulet {
@@ -101,7 +102,7 @@ void WideTreeSet::mark(const uint32_t* places, int count, Array<uint32_t>& unbou
             continue;
         }
         *next = group;  // whether it is new there is not to be foreseen
-        next += changed_[group] == 0;
+        next += one_if(changed_[group] == 0);
         changed_[group] |= uint64_t{1} << lane % group_lanes;
         ++marks_;
     }
@@ -118,7 +119,7 @@ void WideTreeSet::list_marks() {
         size_t n = 0;
         for (size_t g = 0; g < groups_.size(); ++g) {
             touched_[n] = static_cast<uint32_t>(g);
-            n += changed_[g] != 0;
+            n += one_if(changed_[g] != 0);
         }
         touched_.resize_unset(n);
     }
@@ -129,7 +130,7 @@ void WideTreeSet::list_marks() {
         uint64_t left = changed_[g];
         auto list = [&] {
             *next = g * group_lanes + static_cast<uint32_t>(__builtin_ctzll(left | uint64_t{1} << 63));
-            next += left != 0;
+            next += one_if(left != 0);
             left &= left - 1;
         };
         for (int i = 0; i < usual; ++i) list();
@@ -139,14 +140,15 @@ void WideTreeSet::list_marks() {
     for (int i = 0; i < ahead && marks_ > 0; ++i) next[i] = next[-1];
 }
 
-// Of whole groups, so that no group waits with one changed box while another is searched. What the rows need lies
-// scattered over the memory of both frames, and is asked for some rows ahead.
+// Of whole groups, so that no group waits with one changed box while another is searched; `most` is at least as many as
+// a group has, and no batch has more, for a second search of the few behind would cost almost a whole one. What the
+// rows need lies scattered over the memory of both frames, and is asked for some rows ahead.
 bool WideTreeSet::next_batch(const BroadBox* boxes, int most, Array<uint32_t>& jumped) {
     if (begun_marks_ == marks_) return false;
     const uint32_t* marked = marked_lane_.data();
     const int begin = begun_marks_;
     int end = marks_ - begin > most ? begin + most : marks_;
-    while (end < marks_ && marked[end] / group_lanes == marked[end - 1] / group_lanes) ++end;
+    while (end < marks_ && marked[end] / group_lanes == marked[end - 1] / group_lanes) --end;
     begun_marks_ = end;
     first_touched_ = end_touched_;
     while (end_touched_ < touched_.size() && touched_[end_touched_] <= marked[end - 1] / group_lanes) ++end_touched_;
@@ -234,38 +236,49 @@ void WideTreeSet::extend_bounds(int level, uint32_t child, const BroadBox& box) 
     }
 }
 
-// The boxes of after into their lanes, with the steps of both states, and what is above made to hold both.
+// The boxes of after into their lanes, with the steps of both states, and what is above made to hold both. How many
+// rows a group has is not to be foreseen, so what its rows come to together is written after each of them.
 void WideTreeSet::widen() {
     row_steps_.resize_unset(rows_.size());
     kernels_.take_over(groups_.data(), coarse_.data(), rows_.data(), row_lane_.data(), rows_.count(),
                        row_steps_.data());
+    moves_.resize_unset(rows_.size());
+    GroupMove* next = moves_.data();  // after that of `now`
+    GroupMove now{};
+    now.group = no_box;
+    for (uint32_t i = 0; i < rows_.size(); ++i) {
+        const WideTreeChange& row = rows_[i];
+        const uint32_t g = row_lane_[i] / group_lanes;
+        const size_t first = one_if(g != now.group);
+        next += first;
+        const Quad old = (Quad)(Wide<uint32_t, 4>{} - static_cast<uint32_t>(first));  // not numbers: give the others
+        auto kept = [&](Quad q) { return (Quad)((Wide<uint32_t, 4>)q | (Wide<uint32_t, 4>)old); };
+        now.lower_before = minimum(kept(now.lower_before), lower_of(row.before));
+        now.lower_after = minimum(kept(now.lower_after), lower_of(row.after));
+        now.upper_before = maximum(kept(now.upper_before), upper_of(row.before));
+        now.upper_after = maximum(kept(now.upper_after), upper_of(row.after));
+        now.lanes = (now.lanes & (uint64_t{first} - 1)) | uint64_t{1} << row_lane_[i] % group_lanes;
+        now.first_row += (i - now.first_row) & (0u - static_cast<uint32_t>(first));
+        now.group = g;
+        next[-1] = now;
+    }
     shrunk_.reserve(shrunk_.size() + end_touched_ - first_touched_);
     uint32_t* shrunk = shrunk_.data() + shrunk_.size();
-    const uint32_t *lane = row_lane_.data(), *end = lane + rows_.size();
-    const WideTreeChange* row = rows_.data();
-    while (lane < end) {
-        const uint32_t g = *lane / group_lanes;
-        first_row_[g] = static_cast<uint32_t>(row - rows_.data());
-        const Bounds6 bounds = bounds_at(0, g);
+    for (const GroupMove* m = moves_.data(); m < next; ++m) {
+        const Bounds6 bounds = bounds_at(0, m->group);
         const Quad lower{bounds.at[0], bounds.at[1], bounds.at[2], 0},
             upper{bounds.at[3], bounds.at[4], bounds.at[5], 0};
-        Quad lowest = lower, highest = upper;
-        auto inwards = lower > upper;  // sides that a box leaves which has made them what they are
-        uint64_t changed = 0;
-        for (; lane < end && *lane / group_lanes == g; ++lane, ++row) {
-            const Quad low = lower_of(row->after), high = upper_of(row->after);
-            changed |= uint64_t{1} << *lane % group_lanes;
-            inwards |= (lower_of(row->before) <= lower) & (low > lower);
-            inwards |= (upper_of(row->before) >= upper) & (high < upper);
-            lowest = minimum(low, lowest);
-            highest = maximum(high, highest);
-        }
-        changed_[g] = changed;
-        *shrunk = g;
-        const uint8_t loosened = loosened_[g] + ((mask_bits(inwards) & 7) != 0);
-        loosened_[g] = loosened;
-        shrunk += loosened >= most_loosened;
-        set_bounds(0, g, {{lowest[0], lowest[1], lowest[2], highest[0], highest[1], highest[2]}});
+        // Sides that boxes leave which had made them what they are.
+        const auto inwards = ((m->lower_before <= lower) & (m->lower_after > lower)) |
+                             ((m->upper_before >= upper) & (m->upper_after < upper));
+        const uint8_t loosened = loosened_[m->group] + ((mask_bits(inwards) & 7) != 0);
+        loosened_[m->group] = loosened;
+        *shrunk = m->group;
+        shrunk += one_if(loosened >= most_loosened);
+        changed_[m->group] = m->lanes;
+        first_row_[m->group] = m->first_row;
+        const Quad lowest = minimum(m->lower_after, lower), highest = maximum(m->upper_after, upper);
+        set_bounds(0, m->group, {{lowest[0], lowest[1], lowest[2], highest[0], highest[1], highest[2]}});
     }
     shrunk_.resize_unset(static_cast<size_t>(shrunk - shrunk_.data()));
     raise(touched_.data() + first_touched_, end_touched_ - first_touched_);

@@ -42,45 +42,71 @@ private:
     // Groups beyond so many are likely not to be near, and are asked for so many entries ahead.
     static constexpr int most_near = 512, ahead = 8, compared_ahead = 16;
 
+    // What of a group may meet a row; not nothing.
+    struct Near {
+        uint64_t lanes;
+        uint32_t entry;
+    };
+
     // Their own groups first, whose frames their steps are in already.
     void look_in_own() {
+        Near near[Base::most_rows];
+        size_t n = 0;
         for (int i = 0; i < count_; ++i) {
             const uint32_t g = this->rows_[i].index, lane = this->rows_[i].unused;
             const uint64_t steps = changes_.steps[first_ + i].around;
             uint64_t lanes = may_overlap<F>(this->tree_.coarse[g], (Bytes16)Wide<uint64_t, 2>{steps, steps});
             lanes &= ~(changes_.changed[g] & (all_lanes >> (group_lanes - 1 - lane)));
-            note(Base::entry(i, static_cast<int>(g)), lanes);
+            near[n] = {lanes, Base::entry(i, static_cast<int>(g))};
+            n += one_if(lanes != 0);
         }
+        note(near, n);
     }
 
     void look(const List& list) {
+        Near near[List::most + block_lanes];
+        note(near, in_moving_ ? test<true>(list, near) : test<false>(list, near));
+    }
+
+    // Gives how many entries are near.
+    template <bool InMoving>
+    size_t test(const List& list, Near* near) {
         const CoarseBoxes* groups = this->tree_.coarse;
-        for (int i = 0; i < list.count; ++i) {
+        const uint64_t* changed = changes_.changed;
+        const bool far = far_;
+        size_t n = 0;
+        for (int i = 0, count = list.count; i < count; ++i) {
             const uint32_t entry = list.at[i];
-            if (far_ && i + ahead < list.count)
+            if (far && i + ahead < count)
                 prefetch<sizeof(CoarseBoxes) / 64>(&groups[Base::node_of(list.at[i + ahead])]);
             const BroadBox& row = this->rows_[Base::row_of(entry)];
             const auto g = static_cast<uint32_t>(Base::node_of(entry));
             uint64_t lanes = may_overlap<F>(groups[g], steps_of(groups[g], row));
-            if (in_moving_) lanes &= ~(changes_.changed[g] & (uint64_t{0} - (g < row.index)));
-            note(entry, lanes);
+            if constexpr (InMoving) lanes &= ~(changed[g] & (uint64_t{0} - (g < row.index)));
+            near[n] = {lanes, entry};
+            n += one_if(lanes != 0);
         }
+        return n;
     }
 
-    // Mostly there are one or two or none; a loop would end where the machine does not expect it.
-    LENDULET_FORCE_INLINE void note(uint32_t entry, uint64_t lanes) {
-        const Candidate base = uint64_t{entry} << lane_bits;
+    // Mostly there are one or two lanes; a loop would end where the machine does not expect it. It notices late where
+    // that depends on a test that has just begun, so all tests of a list come first.
+    void note(const Near* near, size_t count) {
         Candidate* next = next_;
-        auto lowest = [&] {
-            *next = base + lowest_lane(lanes);
-            next += lanes != 0;
+        for (size_t i = 0; i < count; ++i) {
+            const Candidate base = uint64_t{near[i].entry} << lane_bits;
+            uint64_t lanes = near[i].lanes;
+            *next++ = base + lowest_lane(lanes);
             lanes &= lanes - 1;
-        };
-        lowest();
-        lowest();
-        while (lanes) lowest();
+            *next = base + lowest_lane(lanes);
+            next += one_if(lanes != 0);
+            for (lanes &= lanes - 1; lanes; lanes &= lanes - 1) *next++ = base + lowest_lane(lanes);
+            if (next - found_ <= most_candidates) continue;
+            next_ = next;
+            compare();
+            next = next_;
+        }
         next_ = next;
-        if (next_ - found_ > most_candidates) compare();
     }
 
     void ask_for(Candidate candidate) const {
@@ -112,9 +138,9 @@ private:
                 const bool was = meet(mine.before, *before), is = meet(mine.after, *after);
                 const uint32_t a = mine.after.index, b = after->index;
                 // Begun pairs ascend, ended ones descend; which it is cannot be foreseen.
-                const uint32_t swapped = (a ^ b) & (0u - static_cast<uint32_t>((a < b) != is));
+                const uint32_t swapped = (a ^ b) & (0u - static_cast<uint32_t>(one_if((a < b) != is)));
                 *next = {a ^ swapped, b ^ swapped};
-                next += was != is;
+                next += one_if(was != is);
             }
             out_.next = next;
         }

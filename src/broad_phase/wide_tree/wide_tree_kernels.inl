@@ -3,6 +3,7 @@
 // of a wider machine. F is the vector of the unit's width.
 #include "base/prefetch.h"
 #include "broad_phase/wide_tree/wide_tree_kernels.h"
+#include "math/unbranched.h"
 #include "math/wide/bytes.h"
 #include "math/wide/gather.h"
 #include "math/wide/mask.h"

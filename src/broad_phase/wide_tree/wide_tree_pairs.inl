@@ -12,8 +12,10 @@ LENDULET_FORCE_INLINE void write_pairs(PairStream& out, const BroadBox& own, con
     BoxPair* next = out.next;
     do {
         const BroadBox& other = others.boxes[take_lane(lanes)];
-        *next = own.index < other.index ? BoxPair{own.index, other.index} : BoxPair{other.index, own.index};
-        next += meet(own, other);
+        const uint32_t swapped =
+            (own.index ^ other.index) & (0u - static_cast<uint32_t>(one_if(other.index < own.index)));
+        *next = {own.index ^ swapped, other.index ^ swapped};
+        next += one_if(meet(own, other));
     } while (lanes);
     out.next = next;
 }
@@ -35,7 +37,7 @@ LENDULET_FORCE_INLINE void pairs_within(const BoxGroup& group, const CoarseBoxes
             uint64_t lanes = may_overlap<F>(coarse, first, used, steps[0] + i, group_lanes);
             lanes &= all_lanes << i << 1;
             hits[n] = {lanes, i};
-            n += lanes != 0;
+            n += static_cast<int>(one_if(lanes != 0));
         }
     }
     for (int i = 0; i < n; ++i) write_pairs(out, group.boxes[hits[i].own], group, hits[i].lanes);
@@ -70,7 +72,7 @@ LENDULET_FORCE_INLINE void pairs_between(const BoundedGroup& a, const BoundedGro
         int i = take_lane(left);
         uint64_t lanes = may_overlap<F>(theirs.coarse, steps_of(theirs.coarse, mine.boxes.boxes[i])) & valid;
         hits[n] = {lanes, i};
-        n += lanes != 0;
+        n += static_cast<int>(one_if(lanes != 0));
     }
     for (int i = 0; i < n; ++i) write_pairs(out, mine.boxes.boxes[hits[i].own], theirs.boxes, hits[i].lanes);
 }

@@ -14,7 +14,7 @@ void find_overlapping(const WideTreeView& tree, const Bounds6& bounds, IndexStre
         while (lanes) {
             const BroadBox& found = group.boxes[take_lane(lanes)];
             *next = found.index;
-            next += meet(box, found);
+            next += one_if(meet(box, found));
         }
         out.next = next;
     });
@@ -55,7 +55,7 @@ private:
             const CoarseBoxes& coarse = this->tree_.coarse[Base::node_of(list.at[i])];
             uint64_t lanes = may_overlap<F>(coarse, steps_of(coarse, this->rows_[Base::row_of(list.at[i])]));
             hits[n] = {lanes, list.at[i]};
-            n += lanes != 0;
+            n += static_cast<int>(one_if(lanes != 0));
         }
         for (int i = 0; i < n; ++i) {
             if (out_.end - out_.next < static_cast<ptrdiff_t>(PairList::most_at_once)) out_.full(out_);
@@ -66,7 +66,7 @@ private:
             for (uint64_t lanes = hits[i].lanes; lanes;) {
                 const BroadBox& found = group.boxes[take_lane(lanes)];
                 *next = {query, found.index};
-                next += meet(this->rows_[row], found);
+                next += one_if(meet(this->rows_[row], found));
             }
             out_.next = next;
         }

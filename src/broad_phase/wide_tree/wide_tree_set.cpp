@@ -33,7 +33,7 @@ int blocks_for(int children) { return (children + block_lanes - 1) / block_lanes
 WideTreeSet::WideTreeSet(const Memory* memory, const WideTreeKernels& kernels) : kernels_(kernels), order_(memory) {
     auto give = [&](auto&... arrays) { (arrays.set_memory(memory), ...); };
     give(groups_, coarse_, blocks_, place_, unbounded_, unbounded_place_, lane_of_, home_, size_, changed_, loosened_);
-    give(marked_lane_, touched_, parents_, shrunk_, first_row_, rows_, row_lane_, row_steps_);
+    give(marked_lane_, touched_, parents_, shrunk_, first_row_, rows_, row_lane_, row_steps_, moves_);
 }
 
 WideTreeView WideTreeSet::view() const {
@@ -199,7 +199,7 @@ size_t WideTreeSet::bytes() const {
     size_t sum = order_.bytes();
     auto add = [&](const auto&... arrays) { ((sum += arrays.bytes()), ...); };
     add(groups_, coarse_, blocks_, place_, unbounded_, unbounded_place_, lane_of_, home_, size_, changed_, loosened_);
-    add(marked_lane_, touched_, parents_, shrunk_, first_row_, rows_, row_lane_, row_steps_);
+    add(marked_lane_, touched_, parents_, shrunk_, first_row_, rows_, row_lane_, row_steps_, moves_);
     return sum;
 }
 

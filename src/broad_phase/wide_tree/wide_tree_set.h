@@ -47,10 +47,10 @@ public:
     // 2. Marks boxes that change, once. Appends those that are unbounded to `unbounded` instead: they are to be removed
     // and inserted.
     void mark(const uint32_t* places, int count, Array<uint32_t>& unbounded);
-    // 3. Collects the next of the marked boxes, of about `most`, before and after, `boxes` being the new array; they
-    // get their new state, and all bounds hold both, so that their changes can be searched. False where none are left.
-    // Appends the places of those that jump or become another box to `jumped`: they are no longer marked, but to be
-    // removed and inserted.
+    // 3. Collects the next of the marked boxes, at most `most` >= group_lanes, before and after, `boxes` being the new
+    // array; they get their new state, and all bounds hold both, so that their changes can be searched. False where
+    // none are left. Appends the places of those that jump or become another box to `jumped`: they are no longer
+    // marked, but to be removed and inserted.
     bool next_batch(const BroadBox* boxes, int most, Array<uint32_t>& jumped);
     WideTreeChanges changes() const;
     int changed_count() const { return rows_.count(); }
@@ -71,6 +71,13 @@ public:
 
 private:
     static constexpr uint32_t beside = 1u << 31;  // in lane_of_: the rest counts in the list of unbounded boxes
+
+    // What the rows of one group come to together.
+    struct alignas(16) GroupMove {
+        Wide<float, 4> lower_before, upper_before, lower_after, upper_after;  // the box around all; the fourth is none
+        uint64_t lanes;
+        uint32_t group, first_row;
+    };
 
     void fill_groups(const BroadBox* boxes, TaskPool* tasks);
     void plan_levels(int first_cleared);
@@ -120,6 +127,7 @@ private:
     Array<WideTreeChange> rows_;
     Array<uint32_t> row_lane_;
     Array<StepsOfTwo> row_steps_;
+    Array<GroupMove> moves_;
 };
 
 }  // namespace lendulet

@@ -8,6 +8,7 @@
 
 #include "broad_phase/sort.h"
 #include "broad_phase/wide_tree/wide_tree.h"
+#include "math/unbranched.h"
 
 namespace lendulet {
 
@@ -130,8 +131,8 @@ void WideTree::sort_changes(Array<BoxPair>& begun, Array<BoxPair>& ended) {
         const bool is = pair.a < pair.b;
         begun_.data()[begins] = key_of(pair);
         ended_.data()[ends] = key_of({pair.b, pair.a});
-        begins += is;
-        ends += !is;
+        begins += one_if(is);
+        ends += one_if(!is);
     }
     begun_.resize_unset(begins);
     ended_.resize_unset(ends);
