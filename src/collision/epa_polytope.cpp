@@ -69,11 +69,16 @@ void Polytope::start(const Simplex& s, double tolerance) {
     for (int m = 0; m < 4; ++m) {
         int i = corners[m][0], j = corners[m][positive ? 1 : 2], k = corners[m][positive ? 2 : 1];
         set_corners(m, i, j, k);
-        set_planes<double>(&m, y_[i], y_[j], y_[k]);
         // The neighbour across an edge is the face opposite to the remaining corner.
         faces_[m].neighbour[0] = static_cast<uint8_t>(k);
         faces_[m].neighbour[1] = static_cast<uint8_t>(i);
         faces_[m].neighbour[2] = static_cast<uint8_t>(j);
+    }
+    for (int m = 0; m < 4; m += 2) {
+        const uint8_t *one = faces_[m].vertex, *two = faces_[m + 1].vertex;
+        const int faces[2] = {m, m + 1};
+        set_planes<Two>(faces, side_by_side(y_[one[0]], y_[two[0]]), side_by_side(y_[one[1]], y_[two[1]]),
+                        side_by_side(y_[one[2]], y_[two[2]]));
     }
 }
 

@@ -30,6 +30,7 @@ public:
     Vec3d normal(int f) const { return (1.0 / square_root(faces_[f].nn)) * faces_[f].n; }
     // From the origin to the plane of face f with normal n, positive where the origin lies inside.
     double distance(int f, Vec3d n) const { return dot(n, y_[faces_[f].vertex[0]]); }
+    double height_above(int f, Vec3d y) const { return dot(normal(f), y - y_[faces_[f].vertex[0]]); }
     Simplex triangle(int f) const;
     const uint8_t* corners(int f) const { return faces_[f].vertex; }  // three vertices by number
 

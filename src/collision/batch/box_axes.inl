@@ -47,37 +47,61 @@ struct BestAxis {
     F clearance;  // largest separation of all
 };
 
-// Separations along the 15 axes. Nearly parallel edges have none, the faces cover them.
+// The separation along the normal of a box's face: `along` is where the other box is on that axis, `half` the own half
+// extent, and the other's axes lean towards it by the cosines `turned`. Here and below the types are those of lanes
+// that are different pairs, or different axes of one pair.
+template <class F, class S>
+LENDULET_FORCE_INLINE F face_separation(F along, F half, const S* others, const F* turned) {
+    return absolute(along) - (half + (others[0] * turned[0] + others[1] * turned[1] + others[2] * turned[2]));
+}
+
+// An edge i of A and an edge j of B. What belongs to the axes after i ends in 1 and 2, as what belongs to those after
+// j.
+template <class F, class S>
+struct EdgePair {
+    S along_1, along_2;  // where B is on the axes of A
+    S half_a1, half_a2;
+    F r_1, r_2;  // axis of A times axis j of B, and their sizes
+    F ar_1, ar_2;
+    F half_b1, half_b2;
+    F ar_b1, ar_b2;  // axis i of A times axis of B
+    // The separation along the cross product of the edges, times the sine between these.
+    LENDULET_FORCE_INLINE F separation_times_sine() const {
+        F distance = absolute(along_2 * r_1 - along_1 * r_2);
+        F reach = (half_a1 * ar_2 + half_a2 * ar_1) + (half_b1 * ar_b2 + half_b2 * ar_b1);
+        return distance - reach;
+    }
+    LENDULET_FORCE_INLINE F sine_squared() const { return r_1 * r_1 + r_2 * r_2; }
+};
+// Of edges nearer to parallel the faces take care.
+constexpr float least_sine_squared = 1e-5f;
+
+// Separations along the 15 axes. Nearly parallel edges have none.
 template <class F>
 LENDULET_FORCE_INLINE void separations(const WideBox<F>& a, const WideBox<F>& b, F* s, F* aligned) {
     Vec3T<F> d = offset_between(a, b);
-    F r[3][3], ar[3][3], along_a[3];  // r[i][j] = (axis i of A) . (axis j of B)
+    F r[3][3], ar[3][3], turned[3][3], along_a[3];  // r[i][j] = (axis i of A) . (axis j of B); turned is ar transposed
     for (int i = 0; i < 3; ++i) {
         along_a[i] = dot(a.axis[i], d);
-        for (int j = 0; j < 3; ++j) r[i][j] = dot(a.axis[i], b.axis[j]), ar[i][j] = absolute(r[i][j]);
+        for (int j = 0; j < 3; ++j) r[i][j] = dot(a.axis[i], b.axis[j]), turned[j][i] = ar[i][j] = absolute(r[i][j]);
     }
     for (int i = 0; i < 3; ++i) {
         aligned[i] = maximum(maximum(ar[i][0], ar[i][1]), ar[i][2]);
         aligned[3 + i] = maximum(maximum(ar[0][i], ar[1][i]), ar[2][i]);
     }
     for (int i = 0; i < 3; ++i) {
-        F reach = a.half[i] + (b.half[0] * ar[i][0] + b.half[1] * ar[i][1] + b.half[2] * ar[i][2]);
-        s[i] = absolute(along_a[i]) - reach;
-    }
-    for (int j = 0; j < 3; ++j) {
-        F reach = b.half[j] + (a.half[0] * ar[0][j] + a.half[1] * ar[1][j] + a.half[2] * ar[2][j]);
-        s[3 + j] = absolute(dot(b.axis[j], d)) - reach;
+        s[i] = face_separation(along_a[i], a.half[i], b.half, ar[i]);
+        s[3 + i] = face_separation(dot(b.axis[i], d), b.half[i], a.half, turned[i]);
     }
     for (int i = 0; i < 3; ++i) {
         const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
         for (int j = 0; j < 3; ++j) {
             const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-            F distance = absolute(along_a[i2] * r[i1][j] - along_a[i1] * r[i2][j]);
-            F reach =
-                (a.half[i1] * ar[i2][j] + a.half[i2] * ar[i1][j]) + (b.half[j1] * ar[i][j2] + b.half[j2] * ar[i][j1]);
-            F sine_squared = r[i1][j] * r[i1][j] + r[i2][j] * r[i2][j];
-            F separation = (distance - reach) / square_root(maximum(sine_squared, splat<F>(1e-12f)));
-            s[6 + 3 * i + j] = select(sine_squared > splat<F>(1e-5f), separation, splat<F>(lowest_score));
+            const EdgePair<F, F> e{along_a[i1], along_a[i2], a.half[i1], a.half[i2], r[i1][j],  r[i2][j],
+                                   ar[i1][j],   ar[i2][j],   b.half[j1], b.half[j2], ar[i][j1], ar[i][j2]};
+            F sine_squared = e.sine_squared();
+            F separation = e.separation_times_sine() / square_root(maximum(sine_squared, splat<F>(1e-12f)));
+            s[6 + 3 * i + j] = select(sine_squared > splat<F>(least_sine_squared), separation, splat<F>(lowest_score));
         }
     }
 }
