@@ -13,32 +13,42 @@ constexpr float parallel_faces = 0.99995f;
 template <class F>
 struct WideBox {
     Vec3T<F> axis[3];  // in the world
-    Vec3T<F> centre, arm;
     F half[3];
-    Vec3T<F> low;
 };
 
 template <int W>
 LENDULET_FORCE_INLINE WideBox<Wide<float, W>> load_box(const ShapeFrame* frames, const int32_t* index) {
     using F = Wide<float, W>;
     const float* base = floats_of(frames);
-    F q[4], x[4], arm[4], half[4], low[4];
+    F q[4], half[4];
     gather4<W>(base, index, frame_stride, frame_rotation, q);
-    gather4<W>(base, index, frame_stride, frame_centre, x);
-    gather4<W>(base, index, frame_stride, frame_arm, arm);
     gather4<W>(base, index, frame_stride, frame_half, half);
-    gather4<W>(base, index, frame_stride, frame_low, low);
     Mat3T<F> m = rotation_matrix<F>(QuatT<F>{q[0], q[1], q[2], q[3]}, splat<F>(1.0f));
-    return {{m.x, m.y, m.z},
-            {x[0], x[1], x[2]},
-            {arm[0], arm[1], arm[2]},
-            {half[0], half[1], half[2]},
-            {low[1], low[2], low[3]}};
+    return {{m.x, m.y, m.z}, {half[0], half[1], half[2]}};
 }
-// From the position of one shape to that of the other.
-template <class F>
-LENDULET_FORCE_INLINE Vec3T<F> offset_between(const WideBox<F>& a, const WideBox<F>& b) {
-    return between_centres(a.centre, a.low, b.centre, b.low) + (b.arm - a.arm);
+template <int W>
+LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> load_arm(const ShapeFrame* frames, const int32_t* index) {
+    Wide<float, W> arm[4];
+    gather4<W>(floats_of(frames), index, frame_stride, frame_arm, arm);
+    return {arm[0], arm[1], arm[2]};
+}
+// From the position of one shape to that of the other. Subtracted before they are put side by side: one transposition
+// takes the place of six.
+template <int W>
+LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> load_offsets(const ShapeFrame* frames, const int32_t* from,
+                                                         const int32_t* to) {
+    using Quad = Wide<float, 4>;
+    Wide<float, W> d[4];
+    transpose_quads<W>(
+        [&](int i) {
+            const float *a = floats_of(frames + from[i]), *b = floats_of(frames + to[i]);
+            auto centre = [](const float* f) { return load_wide<Quad>(f + frame_centre); };
+            auto low = [](const float* f) { return load_wide<Quad>(f + frame_low + 1); };
+            auto arm = [](const float* f) { return load_wide<Quad>(f + frame_arm); };
+            return between_centres(centre(a), low(a), centre(b), low(b)) + (arm(b) - arm(a));
+        },
+        d);
+    return {d[0], d[1], d[2]};
 }
 
 template <class F>
@@ -78,8 +88,7 @@ constexpr float least_sine_squared = 1e-5f;
 
 // Separations along the 15 axes. Nearly parallel edges have none.
 template <class F>
-LENDULET_FORCE_INLINE void separations(const WideBox<F>& a, const WideBox<F>& b, F* s, F* aligned) {
-    Vec3T<F> d = offset_between(a, b);
+LENDULET_FORCE_INLINE void separations(const WideBox<F>& a, const WideBox<F>& b, Vec3T<F> d, F* s, F* aligned) {
     F r[3][3], ar[3][3], turned[3][3], along_a[3];  // r[i][j] = (axis i of A) . (axis j of B); turned is ar transposed
     for (int i = 0; i < 3; ++i) {
         along_a[i] = dot(a.axis[i], d);
@@ -108,9 +117,9 @@ LENDULET_FORCE_INLINE void separations(const WideBox<F>& a, const WideBox<F>& b,
 
 // `way`: see BoxBatch.
 template <class F>
-LENDULET_FORCE_INLINE BestAxis<F> best_axis(const WideBox<F>& a, const WideBox<F>& b, F feature, F way) {
+LENDULET_FORCE_INLINE BestAxis<F> best_axis(const WideBox<F>& a, const WideBox<F>& b, Vec3T<F> d, F feature, F way) {
     F s[15], aligned[6];
-    separations(a, b, s, aligned);
+    separations(a, b, d, s, aligned);
     auto number = [](int k) { return splat<F>(static_cast<float>(k)); };
     F face = number(0), face_separation = s[0], edge = number(6), edge_separation = s[6], parallel = aligned[0];
     for (int k = 1; k < 6; ++k) {
