@@ -15,7 +15,7 @@ namespace {
 constexpr double certified_depth = 5e-6, certified_tangent = 1e-9;
 // A first support point that lies this far beyond the origin tells that the cores overlap, but for few pairs that
 // nearly touch.
-constexpr double beyond_doubt = 0.04;
+constexpr double beyond_doubt = 0.03;
 constexpr uint8_t all_points[4] = {0, 1, 2, 3};
 
 // Where a search begins that remembers nothing: from the middle of the difference towards the origin.
@@ -62,11 +62,15 @@ bool are_both(const CoreDifference& difference, GeometryKind kind) {
     return difference.a.kind == kind && difference.b.kind == kind;
 }
 
-// The depth of two hulls by a polytope around the way between their middles, cold or warm: most of what proves it lies
-// there rather than around the normal.
+// The depth of two hulls by a polytope around the way d between their middles, whose support point is `top`, cold or
+// warm: most of what proves it lies there rather than around the normal.
+bool depth_of_hulls(const CoreDifference& difference, const DifferencePoint& top, Vec3d d, Simplex& s,
+                    Penetration& deep) {
+    return expand_below(difference, top, (1.0 / length(d)) * d, s, deep);
+}
 bool depth_of_hulls(const CoreDifference& difference, Simplex& s, Penetration& deep) {
     const Vec3d d = first_direction(difference);
-    return expand_below(difference, difference.support(d), (1.0 / length(d)) * d, s, deep);
+    return depth_of_hulls(difference, difference.support(d), d, s, deep);
 }
 
 // Whether the first point of a query lies beyond the origin by this part of S: it was found along d, or left by the
@@ -76,9 +80,10 @@ bool is_beyond(const CoreDifference& difference, Vec3d d, const Simplex& s, doub
 }
 
 // Hulls that will overlap need no search. Where they do not after all, it begins with the same points.
-LENDULET_FORCE_INLINE bool is_deep_at_once(const CoreDifference& difference, Vec3d d, Simplex& s, Penetration& deep) {
-    return are_both(difference, GeometryKind::hull) && is_beyond(difference, d, s, beyond_doubt) &&
-           depth_of_hulls(difference, s, deep);
+LENDULET_FORCE_INLINE bool is_deep_at_once(const CoreDifference& difference, bool cold, Vec3d d, Simplex& s,
+                                           Penetration& deep) {
+    if (!are_both(difference, GeometryKind::hull) || !is_beyond(difference, d, s, beyond_doubt)) return false;
+    return cold ? depth_of_hulls(difference, s.point(0), d, s, deep) : depth_of_hulls(difference, s, deep);
 }
 
 // The observer's calls go to the untemplated functions where it is silent.
@@ -99,11 +104,11 @@ Penetration expand_as(Recorder& r, const CoreDifference& d, bool, Simplex& s) {
 }
 
 // Steps that are to be seen are taken one by one.
-LENDULET_FORCE_INLINE bool is_deep_as(SilentObserver&, const CoreDifference& difference, Vec3d d, Simplex& s,
+LENDULET_FORCE_INLINE bool is_deep_as(SilentObserver&, const CoreDifference& difference, bool cold, Vec3d d, Simplex& s,
                                       Penetration& deep) {
-    return is_deep_at_once(difference, d, s, deep);
+    return is_deep_at_once(difference, cold, d, s, deep);
 }
-bool is_deep_as(Recorder&, const CoreDifference&, Vec3d, Simplex&, Penetration&) { return false; }
+bool is_deep_as(Recorder&, const CoreDifference&, bool, Vec3d, Simplex&, Penetration&) { return false; }
 bool is_closest_as(SilentObserver&, const CoreDifference& difference, Simplex& s, Penetration& deep) {
     return closest_of_boxes(difference, s, deep);
 }
@@ -163,7 +168,7 @@ LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCach
         return result;
     }
     if (s.count == 0) d = start(difference, cache, s);
-    const bool is_deep = is_deep_as(observer, difference, d, s, deep);
+    const bool is_deep = is_deep_as(observer, difference, cold, d, s, deep);
     Search found = is_deep ? Search{Outcome::overlap, {}, {}, 0.0, 0.0, 0}
                            : search_as(observer, difference, s, method, max_distance);
     // Rounding in slivers of simplices can end the search early or take the origin for enclosed. Neither goes
