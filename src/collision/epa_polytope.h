@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "collision/gjk_difference.h"
+#include "math/wide/wide.h"
 
 namespace lendulet {
 
@@ -48,8 +49,7 @@ private:
     };
 
     void set_corners(int f, int i, int j, int k);
-    template <class F>
-    void set_planes(const int* faces, Vec3T<F> i, Vec3T<F> j, Vec3T<F> k);
+    void set_planes(const int* faces, Vec3T<Wide<double, 2>> i, Vec3T<Wide<double, 2>> j, Vec3T<Wide<double, 2>> k);
     int add_vertex(const DifferencePoint& p);
     bool lies_above(Vec3d y, const Face& face) const;
     void collect_visible(int f, int entered, Vec3d y);
