@@ -21,12 +21,13 @@ constexpr double beyond = 1e-9;
 // Cosine above which two edges count as parallel, as least_sine_squared has it.
 constexpr double parallel_edges = 1.0 - 5.1e-6;
 
-// Three numbers side by side, in two registers of two.
+// Three numbers side by side, in two registers of two; the last lane repeats the third, so that it never has an
+// exception of its own.
 struct Lanes {
     using Two = Wide<double, 2>;
     Two low, high;
     Lanes(Two one, Two other) : low(one), high(other) {}
-    Lanes(double x, double y, double z) : low{x, y}, high{z, 0.0} {}
+    Lanes(double x, double y, double z) : low{x, y}, high{z, z} {}
     explicit Lanes(Vec3d v) : Lanes(v.x, v.y, v.z) {}
     double operator[](int i) const { return i < 2 ? low[i] : high[0]; }
 
@@ -77,6 +78,7 @@ bool has_one_corner(Vec3d half, Vec3d d, double tolerance) {
     const Vec3d rise = times(d, half);
     return minimum(absolute(rise.x), minimum(absolute(rise.y), absolute(rise.z))) > tolerance;
 }
+
 // The boxes, and how B's axes lie in A's frame: m.
 struct Boxes {
     const Mat3d& m;
@@ -132,7 +134,7 @@ struct FaceCorner {
     bool within_first, within_second;
 };
 
-// Whether the point p of the plane lies in the box's face.
+// Whether the point p of the plane lies in the box's face, and along which of its sides it does.
 bool lies_within(Vec3d half, Vec3d p, double slack, FaceCorner& corner) {
     const Three h(half), q(p);
     corner.within_first = absolute(q[corner.first]) <= h[corner.first] + slack;
