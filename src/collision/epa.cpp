@@ -221,16 +221,13 @@ void add_ring(const CoreDifference& difference, Vec3d n, double lean, Simplex& s
     s.add(difference.support(-n));
 }
 
-// Takes a point that lies beyond one of the first four faces.
+// Takes a point that lies beyond one of the first four faces, most likely the one opposite to the last corner.
 void take_beyond(Polytope& polytope, const DifferencePoint& p, double tolerance) {
-    int best = 0;
-    double most = tolerance;
-    for (int f = 0; f < 4; ++f) {
-        const Vec3d n = polytope.normal(f);
-        const double above = dot(n, p.y) - polytope.distance(f, n);
-        if (above > most) most = above, best = f;
-    }
-    if (most > tolerance) polytope.expand(best, p);
+    for (int f = 3; f >= 0; --f)
+        if (polytope.height_above(f, p.y) > tolerance) {
+            polytope.expand(f, p);
+            return;
+        }
 }
 
 }  // namespace

@@ -1,24 +1,15 @@
 #include "collision/epa_polytope.h"
 
-#include "math/wide/wide.h"
-
 namespace lendulet {
 namespace {
 
 // Squared sine below which the corners of a face count as collinear: its normal would be rounding.
 constexpr double collinear = 1e-18;
 
-using Two = Wide<double, 2>;
-
 constexpr int next_corner(int i) { return i == 2 ? 0 : i + 1; }
 
-LENDULET_FORCE_INLINE double either(bool mask, double a, double b) { return mask ? a : b; }
-template <class M>
-LENDULET_FORCE_INLINE Two either(M mask, Two a, Two b) {
-    return mask ? a : b;
-}
-LENDULET_FORCE_INLINE double lane_of(double a, int) { return a; }
-LENDULET_FORCE_INLINE double lane_of(Two a, int i) { return a[i]; }
+using Two = Wide<double, 2>;
+
 LENDULET_FORCE_INLINE Vec3T<Two> side_by_side(Vec3d a, Vec3d b) {
     return {Two{a.x, b.x}, Two{a.y, b.y}, Two{a.z, b.z}};
 }
@@ -33,18 +24,17 @@ inline void Polytope::set_corners(int f, int i, int j, int k) {
     is_visible_[f] = false;
 }
 
-// Planes of the faces with corners i, j, k: one for each lane of F.
-template <class F>
-LENDULET_FORCE_INLINE void Polytope::set_planes(const int* faces, Vec3T<F> i, Vec3T<F> j, Vec3T<F> k) {
-    const Vec3T<F> e1 = j - i, e2 = k - i, n = cross(e1, e2);
-    const F nn = dot(n, n), h = dot(n, i);
+// Planes of two faces with corners i, j, k.
+LENDULET_FORCE_INLINE void Polytope::set_planes(const int* faces, Vec3T<Two> i, Vec3T<Two> j, Vec3T<Two> k) {
+    const Vec3T<Two> e1 = j - i, e2 = k - i, n = cross(e1, e2);
+    const Two nn = dot(n, n), h = dot(n, i), size = h < Two{} ? -h : h;
     const auto plain = nn > collinear * dot(e1, e1) * dot(e2, e2);
-    const F key = either(plain, h * either(h < F{}, -h, h) / nn, F{} + far);
-    for (int lane = 0; lane < static_cast<int>(sizeof(F) / sizeof(double)); ++lane) {
+    const Two key = plain ? h * size / nn : Two{far, far};
+    for (int lane = 0; lane < 2; ++lane) {
         Face& face = faces_[faces[lane]];
-        key_[faces[lane]] = lane_of(key, lane);
-        face.n = {lane_of(n.x, lane), lane_of(n.y, lane), lane_of(n.z, lane)};
-        face.nn = lane_of(nn, lane);
+        key_[faces[lane]] = key[lane];
+        face.n = {n.x[lane], n.y[lane], n.z[lane]};
+        face.nn = nn[lane];
         if (!(key_[faces[lane]] < far)) face.n = {};
     }
 }
@@ -69,11 +59,16 @@ void Polytope::start(const Simplex& s, double tolerance) {
     for (int m = 0; m < 4; ++m) {
         int i = corners[m][0], j = corners[m][positive ? 1 : 2], k = corners[m][positive ? 2 : 1];
         set_corners(m, i, j, k);
-        set_planes<double>(&m, y_[i], y_[j], y_[k]);
         // The neighbour across an edge is the face opposite to the remaining corner.
         faces_[m].neighbour[0] = static_cast<uint8_t>(k);
         faces_[m].neighbour[1] = static_cast<uint8_t>(i);
         faces_[m].neighbour[2] = static_cast<uint8_t>(j);
+    }
+    for (int m = 0; m < 4; m += 2) {
+        const uint8_t *one = faces_[m].vertex, *two = faces_[m + 1].vertex;
+        const int faces[2] = {m, m + 1};
+        set_planes(faces, side_by_side(y_[one[0]], y_[two[0]]), side_by_side(y_[one[1]], y_[two[1]]),
+                   side_by_side(y_[one[2]], y_[two[2]]));
     }
 }
 
@@ -163,7 +158,7 @@ bool Polytope::expand(int f, const DifferencePoint& p) {
     const Vec3T<Two> top = side_by_side(p.y, p.y);
     for (int i = 0; i < edge_count_; i += 2) {
         const Edge &one = outline_[i], &two = outline_[i + 1];
-        set_planes<Two>(&fresh[i], side_by_side(y_[one.from], y_[two.from]), side_by_side(y_[one.to], y_[two.to]), top);
+        set_planes(&fresh[i], side_by_side(y_[one.from], y_[two.from]), side_by_side(y_[one.to], y_[two.to]), top);
     }
     for (int i = 0; i < edge_count_; ++i) {
         const Edge& edge = outline_[i];

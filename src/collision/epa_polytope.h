@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "collision/gjk_difference.h"
+#include "math/wide/wide.h"
 
 namespace lendulet {
 
@@ -30,6 +31,7 @@ public:
     Vec3d normal(int f) const { return (1.0 / square_root(faces_[f].nn)) * faces_[f].n; }
     // From the origin to the plane of face f with normal n, positive where the origin lies inside.
     double distance(int f, Vec3d n) const { return dot(n, y_[faces_[f].vertex[0]]); }
+    double height_above(int f, Vec3d y) const { return dot(normal(f), y - y_[faces_[f].vertex[0]]); }
     Simplex triangle(int f) const;
     const uint8_t* corners(int f) const { return faces_[f].vertex; }  // three vertices by number
 
@@ -47,8 +49,7 @@ private:
     };
 
     void set_corners(int f, int i, int j, int k);
-    template <class F>
-    void set_planes(const int* faces, Vec3T<F> i, Vec3T<F> j, Vec3T<F> k);
+    void set_planes(const int* faces, Vec3T<Wide<double, 2>> i, Vec3T<Wide<double, 2>> j, Vec3T<Wide<double, 2>> k);
     int add_vertex(const DifferencePoint& p);
     bool lies_above(Vec3d y, const Face& face) const;
     void collect_visible(int f, int entered, Vec3d y);

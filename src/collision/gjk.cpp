@@ -15,7 +15,7 @@ namespace {
 constexpr double certified_depth = 5e-6, certified_tangent = 1e-9;
 // A first support point that lies this far beyond the origin tells that the cores overlap, but for few pairs that
 // nearly touch.
-constexpr double beyond_doubt = 0.05;
+constexpr double beyond_doubt = 0.03;
 constexpr uint8_t all_points[4] = {0, 1, 2, 3};
 
 // Where a search begins that remembers nothing: from the middle of the difference towards the origin.
@@ -62,16 +62,28 @@ bool are_both(const CoreDifference& difference, GeometryKind kind) {
     return difference.a.kind == kind && difference.b.kind == kind;
 }
 
-// Where the first point of a cold query, found along d, or the four points of a warm one (d is zero) tell that boxes or
-// hulls will overlap, their depth needs no search. Where it is not found after all, the search begins with the same
-// points.
-LENDULET_FORCE_INLINE bool is_deep_at_once(const CoreDifference& difference, Vec3d d, Simplex& s, Penetration& deep) {
-    const double height = dot(d, s.y[0]), dd = dot(d, d), far = beyond_doubt * difference.size;
-    const bool beyond = height > 0.0 && height * height > far * far * dd;
-    if (!beyond && s.count < 4) return false;
-    if (are_both(difference, GeometryKind::box)) return depth_of_boxes(difference, s, deep);
-    if (!beyond || !are_both(difference, GeometryKind::hull)) return false;
-    return expand_below(difference, s.point(0), (1.0 / square_root(dd)) * d, s, deep);
+// The depth of two hulls by a polytope around the way d between their middles, whose support point is `top`, cold or
+// warm: most of what proves it lies there rather than around the normal.
+bool depth_of_hulls(const CoreDifference& difference, const DifferencePoint& top, Vec3d d, Simplex& s,
+                    Penetration& deep) {
+    return expand_below(difference, top, (1.0 / length(d)) * d, s, deep);
+}
+bool depth_of_hulls(const CoreDifference& difference, Simplex& s, Penetration& deep) {
+    const Vec3d d = first_direction(difference);
+    return depth_of_hulls(difference, difference.support(d), d, s, deep);
+}
+
+// Whether the first point of a query lies beyond the origin by this part of S: it was found along d, or left by the
+// last query, whose normal was -d.
+bool is_beyond(const CoreDifference& difference, Vec3d d, const Simplex& s, double share) {
+    return signed_square(dot(d, s.y[0])) > signed_square(share * difference.size) * dot(d, d);
+}
+
+// Hulls that will overlap need no search. Where they do not after all, it begins with the same points.
+LENDULET_FORCE_INLINE bool is_deep_at_once(const CoreDifference& difference, bool cold, Vec3d d, Simplex& s,
+                                           Penetration& deep) {
+    if (!are_both(difference, GeometryKind::hull) || !is_beyond(difference, d, s, beyond_doubt)) return false;
+    return cold ? depth_of_hulls(difference, s.point(0), d, s, deep) : depth_of_hulls(difference, s, deep);
 }
 
 // The observer's calls go to the untemplated functions where it is silent.
@@ -81,18 +93,26 @@ Search search_as(SilentObserver&, const CoreDifference& d, Simplex& s, SimplexSo
 Search search_as(Recorder& r, const CoreDifference& d, Simplex& s, SimplexSolver method, double max_distance) {
     return search(d, s, method, max_distance, r);
 }
-Penetration expand_as(SilentObserver&, const CoreDifference& d, Simplex& s) {
+Penetration expand_as(SilentObserver&, const CoreDifference& d, bool cold, Simplex& s) {
     Penetration deep;
-    return are_both(d, GeometryKind::box) && depth_of_boxes(d, s, deep) ? deep : expand_polytope(d, s, d.centre());
+    if (are_both(d, GeometryKind::box) && closest_of_boxes(d, s, deep)) return deep;
+    if (cold && are_both(d, GeometryKind::hull) && depth_of_hulls(d, s, deep)) return deep;
+    return expand_polytope(d, s, d.centre());
 }
-Penetration expand_as(Recorder& r, const CoreDifference& d, Simplex& s) { return expand_polytope(d, s, d.centre(), r); }
+Penetration expand_as(Recorder& r, const CoreDifference& d, bool, Simplex& s) {
+    return expand_polytope(d, s, d.centre(), r);
+}
 
 // Steps that are to be seen are taken one by one.
-LENDULET_FORCE_INLINE bool is_deep_as(SilentObserver&, const CoreDifference& difference, Vec3d d, Simplex& s,
+LENDULET_FORCE_INLINE bool is_deep_as(SilentObserver&, const CoreDifference& difference, bool cold, Vec3d d, Simplex& s,
                                       Penetration& deep) {
-    return is_deep_at_once(difference, d, s, deep);
+    return is_deep_at_once(difference, cold, d, s, deep);
 }
-bool is_deep_as(Recorder&, const CoreDifference&, Vec3d, Simplex&, Penetration&) { return false; }
+bool is_deep_as(Recorder&, const CoreDifference&, bool, Vec3d, Simplex&, Penetration&) { return false; }
+bool is_closest_as(SilentObserver&, const CoreDifference& difference, Simplex& s, Penetration& deep) {
+    return closest_of_boxes(difference, s, deep);
+}
+bool is_closest_as(Recorder&, const CoreDifference&, Simplex&, Penetration&) { return false; }
 
 // Where a flat or a side of a curved core gave the last normal it mostly gives the next one too: apart, its two points
 // prove themselves; overlapping, a small polytope does.
@@ -120,10 +140,10 @@ bool is_as_before(const CoreDifference& difference, GjkCache& cache, ConvexDista
     return true;
 }
 
-// From the points remembered or, in a cold query, from one, whose direction is given.
+// From the points remembered or, in a cold query, from one; returns their direction.
 Vec3d start(const CoreDifference& difference, const GjkCache& cache, Simplex& s) {
     for (int i = 0; i < cache.count && i < 4; ++i) s.add(difference.point(cache.a[i], cache.b[i]));
-    if (s.count > 0) return {};
+    if (s.count > 0) return -to_double(cache.direction);
     const Vec3d d = first_direction(difference);
     s.add(difference.support(d));
     return d;
@@ -135,10 +155,20 @@ LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCach
     const CoreDifference difference(pair);
     ConvexDistance result;
     if (is_as_before(difference, cache, result)) return result;
+    const bool cold = cache.count == 0;
     Simplex s;
     Penetration deep;
-    const Vec3d d = start(difference, cache, s);
-    const bool is_deep = is_deep_as(observer, difference, d, s, deep);
+    // Boxes that overlap need no search, and few that are near each other do.
+    const bool boxes = are_both(difference, GeometryKind::box), overlapped = cache.count == 4;
+    Vec3d d{};
+    if (!boxes || !overlapped) d = start(difference, cache, s);
+    if (boxes && (overlapped || is_beyond(difference, d, s, 0.0)) && is_closest_as(observer, difference, s, deep)) {
+        result = result_overlapping(difference, deep, 0);
+        remember(s, result.normal, cache);
+        return result;
+    }
+    if (s.count == 0) d = start(difference, cache, s);
+    const bool is_deep = is_deep_as(observer, difference, cold, d, s, deep);
     Search found = is_deep ? Search{Outcome::overlap, {}, {}, 0.0, 0.0, 0}
                            : search_as(observer, difference, s, method, max_distance);
     // Rounding in slivers of simplices can end the search early or take the origin for enclosed. Neither goes
@@ -146,7 +176,7 @@ LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCach
     // one, and a new search from its separating direction the other.
     bool doubtful = found.outcome == Outcome::apart && !(found.gap <= certified_distance * difference.size);
     if (found.outcome == Outcome::overlap || doubtful) {
-        if (!is_deep) deep = expand_as(observer, difference, s);
+        if (!is_deep) deep = expand_as(observer, difference, cold, s);
         result = result_overlapping(difference, deep, found.iterations);
         if (deep.depth < -certified_distance * difference.size) {
             s.count = 0;

@@ -20,6 +20,8 @@ LENDULET_FORCE_INLINE constexpr double absolute(double a) { return __builtin_fab
 // `size` where a is positive or zero, else -size. Without a branch: directions are as often of one sign as of the
 // other, and a wrong guess takes as long as ten operations.
 LENDULET_FORCE_INLINE double towards_sign(double size, double a) { return __builtin_copysign(size, a + 0.0); }
+// Ordered as a is.
+LENDULET_FORCE_INLINE constexpr double signed_square(double a) { return a * absolute(a); }
 LENDULET_FORCE_INLINE constexpr double maximum(double a, double b) { return a > b ? a : b; }
 LENDULET_FORCE_INLINE constexpr double minimum(double a, double b) { return a < b ? a : b; }
 LENDULET_FORCE_INLINE constexpr double length_squared(Vec3d a) { return dot(a, a); }

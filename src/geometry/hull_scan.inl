@@ -22,7 +22,7 @@ template <class F, int count>
 LENDULET_FORCE_INLINE Found scan_some(const float* xs, const float* ys, const float* zs, uint32_t first,
                                       Vec3 direction) {
     constexpr int lanes = lanes_of<F>, vectors = count / lanes, chains = vectors < 4 ? vectors : 4;
-    const Vec3T<F> d = splat<F>(direction);
+    const Vec3T<F> d{repeat<F>(direction.x), repeat<F>(direction.y), repeat<F>(direction.z)};
     F value[vectors];
     for (int i = 0; i < vectors; ++i)
         value[i] = load_wide<F>(xs + i * lanes) * d.x + load_wide<F>(ys + i * lanes) * d.y +
@@ -32,7 +32,7 @@ LENDULET_FORCE_INLINE Found scan_some(const float* xs, const float* ys, const fl
     for (int i = chains; i < vectors; ++i) top[i % chains] = maximum(value[i], top[i % chains]);
     for (int i = 1; i < chains; ++i) top[0] = maximum(top[i], top[0]);
     const float best = largest_lane(top[0]);
-    const F wanted = splat<F>(best);
+    const F wanted = repeat<F>(best);
     uint64_t hits = 0;
     for (int i = 0; i < vectors; ++i) hits |= static_cast<uint64_t>(mask_bits(value[i] == wanted)) << (lanes * i);
     // No hit: the direction is not finite.

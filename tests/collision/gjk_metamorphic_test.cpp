@@ -225,5 +225,48 @@ TEST(GjkSequence, FeaturesOfCylindersGiveTheColdAnswer) {
     EXPECT_LE(expansions, 3 * overlapping);
 }
 
+// Deep within each other, what a query remembers must not lead it farther round than a cold one goes.
+TEST(GjkSequence, DeepHullsTakeNoMoreWarmThanCold) {
+    Random random(30);
+    long warm_expansions = 0, cold_expansions = 0;
+    for (int n = 0; n < cases(2000); ++n) {
+        Core a = random_hull(random, 1.0f, 32), b = random_hull(random, 1.0f, 32);
+        Transform t = place(random, a, b, random.uniform(-0.4f, -0.2f));
+        const SimplexSolver method = both_methods[n % 2];
+        GjkCache cache;
+        distance({&a.geometry, &b.geometry, t}, cache, method, 1e30f);
+        for (int frame = 0; frame < 4; ++frame) {
+            t.translation += 1e-3f * random.direction();
+            t.rotation = normalize(rotation_about(random.direction(), 1e-3f) * t.rotation);
+            ConvexDistance warm = distance({&a.geometry, &b.geometry, t}, cache, method, 1e30f);
+            ConvexDistance cold = query(a, b, t, method);
+            ASSERT_NEAR(warm.distance, cold.distance, tolerance(a, b, warm)) << "sequence " << n << " frame " << frame;
+            ASSERT_TRUE(warm.converged) << "sequence " << n << " frame " << frame;
+            warm_expansions += warm.expansions;
+            cold_expansions += cold.expansions;
+        }
+    }
+    EXPECT_LE(warm_expansions, 1.05 * cold_expansions);
+}
+
+// The features along the best axis of two boxes near each other, touching or overlapping are the nearest ones, or next
+// to these: no search is needed but to prove it.
+TEST(GjkSequence, BoxesNearEachOtherHardlySearch) {
+    Random random(31);
+    long iterations = 0, queries = 0;
+    for (int n = 0; n < cases(20000); ++n) {
+        Core a = random_box(random, 1.0f), b = random_box(random, 1.0f);
+        const float wanted = n % 3 == 0 ? 0.0f : n % 3 == 1 ? random.uniform(0.0f, 0.01f) : random.uniform(-0.1f, 0.0f);
+        const Transform t = place(random, a, b, wanted);
+        for (SimplexSolver method : both_methods) {
+            const ConvexDistance r = query(a, b, t, method);
+            ASSERT_TRUE(r.converged) << "case " << n;
+            iterations += r.iterations;
+            ++queries;
+        }
+    }
+    EXPECT_LE(iterations, 0.5 * queries);
+}
+
 }  // namespace
 }  // namespace lendulet::gjk_test

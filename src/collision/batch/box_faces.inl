@@ -41,10 +41,10 @@ struct WideFaces {
 };
 
 template <class F>
-LENDULET_FORCE_INLINE WideFaces<F> faces_of(const WideBox<F>& reference, const WideBox<F>& incident, F axis) {
+LENDULET_FORCE_INLINE WideFaces<F> faces_of(const WideBox<F>& reference, const WideBox<F>& incident, Vec3T<F> d,
+                                            F axis) {
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f), minus_one = splat<F>(-1.0f);
     WideFaces<F> f;
-    Vec3T<F> d = offset_between(reference, incident);
     Chooser<F> k(axis);
     f.axis = axis;
     Vec3T<F> n = k.at(reference.axis);

@@ -58,7 +58,7 @@ static_assert(offsetof(BatchManifold, id) == 20 * sizeof(float) &&
 // One block of a list: the pairs, and their boxes with the reference box first.
 template <int W>
 struct ListBlock {
-    int32_t pair[W], first[W], second[W];
+    int32_t pair[W], first[W], second[W], a[W];
     alignas(64) float margin[W], way[W], axis[W], exchanged[W];
     LENDULET_FORCE_INLINE ListBlock(const BoxBatch& batch, const int32_t* list, int begin, int count) {
         for (int l = 0; l < W; ++l) {
@@ -66,6 +66,7 @@ struct ListBlock {
             float number = batch.feature[k] - 1.0f;
             bool of_b = number >= 3.0f && number < 6.0f;
             pair[l] = k;
+            a[l] = batch.a[k];
             first[l] = of_b ? batch.b[k] : batch.a[k];
             second[l] = of_b ? batch.a[k] : batch.b[k];
             margin[l] = batch.margin[k];
@@ -84,8 +85,9 @@ void face_manifolds(BoxBatch& batch, const int32_t* list, int count) {
         const ListBlock<W> block(batch, list, k, count);
         WideBox<F> reference = load_box<W>(batch.frames, block.first),
                    incident = load_box<W>(batch.frames, block.second);
+        Vec3T<F> d = load_offsets<W>(batch.frames, block.first, block.second);
         F margin = load_wide<F>(block.margin), exchanged = load_wide<F>(block.exchanged);
-        WideFaces<F> f = faces_of(reference, incident, load_wide<F>(block.axis));
+        WideFaces<F> f = faces_of(reference, incident, d, load_wide<F>(block.axis));
         F slack_u = splat<F>(overhang) * minimum(f.half_u, absolute(f.edge_1.x) + absolute(f.edge_2.x));
         F slack_v = splat<F>(overhang) * minimum(f.half_v, absolute(f.edge_1.y) + absolute(f.edge_2.y));
         const BoxNames<F> reference_names(f.axis, f.sign), incident_names(f.incident_axis, f.incident_sign);
@@ -98,8 +100,8 @@ void face_manifolds(BoxBatch& batch, const int32_t* list, int count) {
         auto of_b = exchanged > half;
         m.normal = select(of_b, -f.w, f.w);
         m.follow = one - exchanged;
-        // From the centre of mass of A's body: the reference shape's own arm, or by way of the incident one.
-        Vec3T<F> origin = select(of_b, offset_between(incident, reference) + incident.arm, reference.arm);
+        // From the centre of mass of A's body to the reference shape.
+        Vec3T<F> arm = load_arm<W>(batch.frames, block.a), origin = select(of_b, arm - d, arm);
         for (int i = 0; i < 4; ++i) {
             const ChosenPoint<F>& q = chosen[i];
             auto there = m.count > splat<F>(static_cast<float>(i));
@@ -124,11 +126,13 @@ void edge_manifolds(BoxBatch& batch, const int32_t* list, int count) {
     for (int k = 0; k < count; k += W) {
         const ListBlock<W> block(batch, list, k, count);
         WideBox<F> a = load_box<W>(batch.frames, block.first), b = load_box<W>(batch.frames, block.second);
+        const Vec3T<F> d = load_offsets<W>(batch.frames, block.first, block.second);
+        const Vec3T<F> arm = load_arm<W>(batch.frames, block.a);
         F number = load_wide<F>(block.axis) - splat<F>(6.0f), margin = load_wide<F>(block.margin);
         F i = select(number >= splat<F>(6.0f), splat<F>(2.0f), select(number >= splat<F>(3.0f), one, zero));
         F j = number - splat<F>(3.0f) * i;
         Chooser<F> ci(i), cj(j);
-        Vec3T<F> d = offset_between(a, b), ea = ci.at(a.axis), eb = cj.at(b.axis);
+        Vec3T<F> ea = ci.at(a.axis), eb = cj.at(b.axis);
         Vec3T<F> n = cross(ea, eb);
         n = (one / length(n)) * n;
         n = select(dot(n, d) < zero, -n, n);
@@ -151,7 +155,7 @@ void edge_manifolds(BoxBatch& batch, const int32_t* list, int count) {
         m.normal = n;
         m.follow = half;
         m.count = select(there, one, zero);
-        m.position[0] = a.arm + half * (on_a + on_b);
+        m.position[0] = arm + half * (on_a + on_b);
         m.separation[0] = separation;
         F name_a = BoxNames<F>::edge(i, sign_bit(sa1), sign_bit(sa2));
         F name_b = BoxNames<F>::edge(j, sign_bit(sb1), sign_bit(sb2));
@@ -169,7 +173,7 @@ void edge_manifolds(BoxBatch& batch, const int32_t* list, int count) {
             const CrossingEdge<F> edge_b{
                 on_b,  eb, t, cj.at(b.half), {sb1 * b1, sb2 * b2}, {two * cj.last(b.half), two * cj.next(b.half)},
                 name_b};
-            append_ends(ends_of(edge_a, edge_b, n, separation, margin), a.arm, m);
+            append_ends(ends_of(edge_a, edge_b, n, separation, margin), arm, m);
         }
         store_manifolds<W>(batch.out, block.pair, load_wide<F>(block.exchanged), m);
     }
@@ -188,7 +192,8 @@ void collide_boxes(BoxBatch& batch) {
         }
         WideBox<F> a = load_box<W>(batch.frames, batch.a + k), b = load_box<W>(batch.frames, batch.b + k);
         F margin = load_wide<F>(batch.margin + k);
-        BestAxis<F> best = best_axis(a, b, load_wide<F>(batch.feature + k), load_wide<F>(batch.way + k));
+        Vec3T<F> d = load_offsets<W>(batch.frames, batch.a + k, batch.b + k);
+        BestAxis<F> best = best_axis(a, b, d, load_wide<F>(batch.feature + k), load_wide<F>(batch.way + k));
         uint32_t near = mask_bits(best.clearance <= margin) & ((1u << live) - 1u);
         uint32_t by_edge = mask_bits(best.axis >= splat<F>(6.0f));
         store_wide(batch.feature + k, best.axis + splat<F>(1.0f));

@@ -104,15 +104,13 @@ LENDULET_FORCE_INLINE float* floats_of(Record* records) {
     return reinterpret_cast<float*>(records);
 }
 
-// out[k] lane i = base[index[i] * stride + offset + k], k = 0 .. 3; stride and offset in floats.
-template <int W>
-LENDULET_FORCE_INLINE void gather4(const float* base, const int32_t* index, int stride, int offset,
-                                   Wide<float, W> out[4]) {
+// out[k] lane i = quad(i)[k], k = 0 .. 3.
+template <int W, class Quad>
+LENDULET_FORCE_INLINE void transpose_quads(Quad&& quad, Wide<float, W> out[4]) {
     using namespace detail;
-    auto quad = [&](int i) { return load_quad(base + static_cast<ptrdiff_t>(index[i]) * stride + offset); };
     if constexpr (W == 1) {
-        const float* p = base + static_cast<ptrdiff_t>(index[0]) * stride + offset;
-        for (int k = 0; k < 4; ++k) out[k] = p[k];
+        const Float4 q = quad(0);
+        for (int k = 0; k < 4; ++k) out[k] = q[k];
     } else if constexpr (W > native_lanes) {  // wider than this unit's registers: by native quads, through memory
         float lanes[4][W];
         for (int i = 0; i < W; i += 4) {
@@ -128,6 +126,19 @@ LENDULET_FORCE_INLINE void gather4(const float* base, const int32_t* index, int 
             else out[k] = join(join(quad(k), quad(k + 4)), join(quad(k + 8), quad(k + 12)));
         }
         transpose4(out[0], out[1], out[2], out[3]);
+    }
+}
+
+// out[k] lane i = base[index[i] * stride + offset + k], k = 0 .. 3; stride and offset in floats.
+template <int W>
+LENDULET_FORCE_INLINE void gather4(const float* base, const int32_t* index, int stride, int offset,
+                                   Wide<float, W> out[4]) {
+    if constexpr (W == 1) {
+        const float* p = base + static_cast<ptrdiff_t>(index[0]) * stride + offset;
+        for (int k = 0; k < 4; ++k) out[k] = p[k];
+    } else {
+        transpose_quads<W>(
+            [&](int i) { return detail::load_quad(base + static_cast<ptrdiff_t>(index[i]) * stride + offset); }, out);
     }
 }
 
