@@ -214,7 +214,8 @@ void tie_other_joints(WorldData& world) {
 bool moves_freely(const WorldData& world, uint32_t slot) {
     constexpr float most_damping = 1.0f;  // 1/s: within the step what it takes from a way is less than the margin
     const BodyInfo& info = world.bodies.info[slot];
-    return !info.has_forces && absolute(info.gravity_factor) <= 1.0f && info.linear_damping <= most_damping &&
+    const bool falls_as_foreseen = info.gravity_factor >= 0.0f && info.gravity_factor <= 1.0f;
+    return !info.has_forces && falls_as_foreseen && info.linear_damping <= most_damping &&
            world.joints.first_of(slot) == no_joint_link;
 }
 
