@@ -25,7 +25,6 @@ struct alignas(64) BouncingContact {
     float face_a = 0.0f, face_b = 0.0f;    // 1 where the normal turns with this body
     float span = 0.0f;                     // largest separation, m
 };
-
 static_assert(sizeof(BouncingContact) == 64);
 
 // Its bodies, and whether it passes (contact_passes): then nothing comes of it while both move as the step began.
