@@ -66,7 +66,6 @@ void ColliderStore::copy(const ColliderStore& o) {
     copy_array(o.local, local);
     copy_array(o.surface, surface);
     copy_array(o.info, info);
-    copy_array(o.place, place);
     shape = o.shape;
     given = o.given;
     material = o.material;
@@ -81,7 +80,6 @@ uint32_t ColliderStore::add() {
     local.resize(n);
     surface.resize(n, Surface{});
     info.resize(n);
-    place.resize(n);
     if (shape.size() < n) shape.resize(n), given.resize(n), material.resize(n), materials.resize(n), table.resize(n);
     info[slot] = {};
     return slot;

@@ -51,19 +51,12 @@ struct ColliderInfo {
     uint64_t user_data = 0;
 };
 
-// Where a collider is this step: turned with its body, and its place from the body's centre of mass in world axes.
-struct ColliderPlace {
-    Quat rotation;
-    Vec3 arm;
-};
-
 struct ColliderStore {
     Slots slots;
     Array<Geometry> geometry;
     Array<Transform> local;  // in the body's principal frame
     Array<Surface> surface;
     Array<ColliderInfo> info;
-    Array<ColliderPlace> place;
     std::vector<std::vector<Surface>> materials;  // of triangles; empty: all have `surface`
     // As given: keeps shared hulls and meshes alive; in the user's body frame; without the world's defaults.
     std::vector<Shape> shape;
@@ -72,7 +65,7 @@ struct ColliderStore {
     std::vector<std::vector<Material>> table;  // for `materials`
 
     ColliderStore(const Memory* memory, uint32_t world)
-        : slots(memory, world), geometry(memory), local(memory), surface(memory), info(memory), place(memory) {}
+        : slots(memory, world), geometry(memory), local(memory), surface(memory), info(memory) {}
 
     uint32_t add();
     // The surface of a collider at one of its triangles (number in the user's list), or at none: -1.
@@ -81,9 +74,6 @@ struct ColliderStore {
     void copy(const ColliderStore& o);
     ColliderId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }
     bool alive(ColliderId c) const { return slots.alive(c.index, c.generation); }
-    void update_place(uint32_t slot, Quat body_orientation) {
-        place[slot] = {body_orientation * local[slot].rotation, rotate(body_orientation, local[slot].translation)};
-    }
 };
 
 }  // namespace lendulet

@@ -1,105 +1,92 @@
 // Stage 1: where every collider that may move is, and the box that holds it through the step.
+#include <algorithm>
+#include <limits>
+
+#include "world/body_lanes/kernels.h"
 #include "world/world_data.h"
 
 namespace lendulet {
 namespace {
 
 constexpr int colliders_per_task = 256;
-// By this share of its margin a box is wider than it need be, so that it can stay as it is while the body trembles or
-// creeps: in a pile that lies, hardly any box changes. A wider one would make pairs that never touch, 1 in 30 at twice
-// this.
-constexpr float box_leeway = 0.25f;
 
-// The margin between two colliders is the sum of half of each one's.
-float half_margin(const ColliderInfo& info) { return 0.5f * minimum(contact_margin, 0.25f * info.radius); }
-
-void set_box(BroadBox& box, uint32_t index, Position lower, Position upper) {
-    box = {{lower.x, lower.y, lower.z}, index, {upper.x, upper.y, upper.z}, 0u};
+BoundBatch batch_of(WorldData& world, float dt) {
+    BoundBatch batch;
+    batch.bodies = columns(world.bodies);
+    batch.local = world.colliders.local.data();
+    batch.geometry = world.colliders.geometry.data();
+    batch.frames = world.frames.data();
+    batch.boxes = world.moving_boxes.data();
+    batch.dt = dt;
+    batch.fall = dt * length(world.config.gravity);
+    batch.most_fall = 2.0f * max_speed;
+    batch.most_foreseen_turn = world.config.continuous ? most_foreseen_turn : std::numeric_limits<float>::infinity();
+    return batch;
 }
 
-// Box of a collider now, grown by `grow` and swept along `sweep`.
-void bound_collider(WorldData& world, uint32_t slot, Vec3 sweep, float grow, BroadBox& box) {
-    const ColliderPlace& place = world.colliders.place[slot];
+void set_lane(BoundBatch& batch, int i, WorldData& world, uint32_t slot) {
+    const ColliderInfo& info = world.colliders.info[slot];
+    const BodyInfo& body = world.bodies.info[info.body];
+    const Geometry& geometry = world.colliders.geometry[slot];
+    const bool fixed = body.type == BodyType::fixed;
+    batch.collider[i] = static_cast<int32_t>(slot);
+    batch.body[i] = static_cast<int32_t>(info.body);
+    batch.kinematic[i] = body.type == BodyType::kinematic ? 1.0f : 0.0f;
+    batch.fixed[i] = fixed ? 1.0f : 0.0f;
+    batch.gravity_factor[i] = fixed ? 0.0f : body.gravity_factor;
+    batch.radius[i] = info.radius;
+    CentredBox box;
+    const bool given = geometry.kind > GeometryKind::box;
+    if (given) box = bounds(geometry, world.bodies.pose[info.body].orientation * world.colliders.local[slot].rotation);
+    batch.given[i] = given ? 1.0f : 0.0f;
+    for (int k = 0; k < 3; ++k) {
+        batch.given_centre[k][i] = component(box.centre, k);
+        batch.given_half[k][i] = component(box.half, k);
+    }
+}
+
+void set_box(BroadBox& box, uint32_t index, const BoundBatch& batch, int i) {
+    box = {{batch.lower[0][i], batch.lower[1][i], batch.lower[2][i]},
+           index,
+           {batch.upper[0][i], batch.upper[1][i], batch.upper[2][i]},
+           0u};
+}
+
+void mark_boxed(WorldData& world, uint32_t slot) {
     ColliderInfo& info = world.colliders.info[slot];
-    CentredBox b = bounds(world.colliders.geometry[slot], place.rotation);
-    Position centre = world.bodies.pose[info.body].position + (place.arm + b.centre);
-    Vec3 half = b.half + Vec3{grow, grow, grow};
-    Position lower = centre - half, upper = centre + half;
-    lower = lower + minimum(sweep, Vec3{});
-    upper = upper + maximum(sweep, Vec3{});
-    set_box(box, slot, lower, upper);
     if (!info.boxed) info.boxed = true, info.boxed_at = static_cast<uint32_t>(world.steps);
 }
 
-// Whether a side of a box is beyond that of what it holds, by at most `leeway`; infinite sides may be equal.
-bool holds(float side, float held, float sign, float leeway) {
-    float beyond = sign * (side - held);
-    return side == held || (beyond >= 0.0f && beyond <= leeway);
+// Of one collider, whose box in the broad phase is none of those that move.
+void bound_one(WorldData& world, uint32_t slot, BoundBatch& batch) {
+    const BroadBox none{};
+    batch.boxes = &none;
+    batch.count = 1;
+    for (int i = 0; i < filled(1); ++i) {
+        set_lane(batch, i, world, slot);
+        batch.box[i] = 0;
+        batch.unboxed[i] = 1.0f;
+    }
+    world.body_kernels.bound(batch);
 }
 
-// Puts a box around `tight` in the place of `box`, unless that holds it and is not much too wide; false where it stays.
-// What moves far in a step would get a new box each time, and gets no leeway.
-bool renew(BroadBox& box, BroadBox tight, float leeway, bool fast) {
-    bool stays = box.index == tight.index;
-    for (int k = 0; k < 3 && stays; ++k)
-        stays = holds(box.lower[k], tight.lower[k], -1.0f, 2.0f * leeway) &&
-                holds(box.upper[k], tight.upper[k], 1.0f, 2.0f * leeway);
-    if (stays) return false;
-    for (int k = 0; k < 3 && !fast; ++k) tight.lower[k] -= leeway, tight.upper[k] += leeway;
-    box = tight;
-    return true;
-}
-
-}  // namespace
-
-void set_frame(WorldData& world, uint32_t slot, float turn) {
-    const ColliderInfo& info = world.colliders.info[slot];
-    const ColliderPlace& place = world.colliders.place[slot];
-    const Geometry& geometry = world.colliders.geometry[slot];
-    const BodyInfo& body = world.bodies.info[info.body];
-    const Position x = world.bodies.pose[info.body].position;
-    ShapeFrame& f = world.frames[slot];
-    const float rotation[4] = {place.rotation.x, place.rotation.y, place.rotation.z, place.rotation.w};
-    for (int k = 0; k < 4; ++k) f.rotation[k] = rotation[k];
-    Vec3 v = world.bodies.velocity(info.body);
-    f.centre[0] = x.x, f.centre[1] = x.y, f.centre[2] = x.z;
-    f.velocity[0] = v.x, f.velocity[1] = v.y, f.velocity[2] = v.z;
-    f.arm[0] = place.arm.x, f.arm[1] = place.arm.y, f.arm[2] = place.arm.z;
-    f.near = minimum(contact_margin, 0.25f * info.radius);
-    // Of what never turns no point moves, however far out.
-    f.reach = body.type == BodyType::fixed ? 0.0f : minimum(length(place.arm) + info.radius, 1e30f);
-    // Where a body turns that far, points found now say nothing of where it will touch: stop_at_impacts() does.
-    bool foreseen = turn <= most_foreseen_turn || !world.config.continuous;
-    f.turning = foreseen ? minimum(turn, 2.0f) * f.reach : 0.0f;
-    f.half[0] = geometry.size.x, f.half[1] = geometry.size.y, f.half[2] = geometry.size.z;
-    f.rounding = geometry.rounding;
-    f.radius = info.radius;
-    const Vec3 low = world.bodies.momenta[info.body].x_low;
-    f.low[0] = low.x, f.low[1] = low.y, f.low[2] = low.z;
-}
-
-namespace {
-
-// False where the collider's box stays as it was.
-bool bound_mover(WorldData& world, uint32_t slot, float dt) {
-    const ColliderInfo& info = world.colliders.info[slot];
-    uint32_t body = info.body;
-    world.colliders.update_place(slot, world.bodies.pose[body].orientation);
-    float turn = dt * length(world.bodies.angular_velocity(body));
-    set_frame(world, slot, turn);
-    float grow = half_margin(info);
-    const float leeway = box_leeway * grow;
-    Vec3 sweep = dt * world.bodies.velocity(body);
-    float fall =
-        0.5f * dt *
-        minimum(dt * length(world.config.gravity) * absolute(world.bodies.info[body].gravity_factor), 2.0f * max_speed);
-    // A turning shape reaches no farther than its radius about the body's centre, nor than the arc it runs through.
-    float reach = length(world.colliders.place[slot].arm) + info.radius;
-    grow += fall + (turn > 0.05f ? minimum(turn, 2.0f) * reach : 0.0f);
-    BroadBox tight;
-    bound_collider(world, slot, sweep, grow, tight);
-    bool fast = max_component(absolute(sweep)) > leeway;
-    return renew(world.moving_boxes[world.box_place[slot]], tight, leeway, fast);
+// Colliders [begin, end) of the movers.
+void bound_movers(WorldData& world, int begin, int end, BoundBatch& batch) {
+    const uint32_t* slots = world.movers.colliders.data() + begin;
+    batch.count = end - begin;
+    for (int i = 0; i < filled(batch.count); ++i) {
+        const uint32_t slot = slots[i < batch.count ? i : batch.count - 1];
+        set_lane(batch, i, world, slot);
+        batch.box[i] = static_cast<int32_t>(world.box_place[slot]);
+        batch.unboxed[i] = world.moving_boxes[world.box_place[slot]].index == slot ? 0.0f : 1.0f;
+        mark_boxed(world, slot);
+    }
+    world.body_kernels.bound(batch);
+    for (int i = 0; i < batch.count; ++i) {
+        const bool renewed = batch.renewed[i] > 0.0f;
+        world.renewed[static_cast<size_t>(begin + i)] = renewed;
+        if (renewed) set_box(world.moving_boxes[static_cast<size_t>(batch.box[i])], slots[i], batch, i);
+    }
 }
 
 // Colliders that have come or gone; the others have not moved.
@@ -107,6 +94,7 @@ void bound_fixed(WorldData& world) {
     ColliderStore& colliders = world.colliders;
     world.fixed_boxes.swap(world.fixed_boxes_before);
     world.fixed_boxes.clear();
+    BoundBatch batch = batch_of(world, 0.0f);
     for (uint32_t slot : colliders.slots.order()) {
         uint32_t body = colliders.info[slot].body;
         if (world.bodies.info[body].type != BodyType::fixed) continue;
@@ -117,13 +105,18 @@ void bound_fixed(WorldData& world) {
             continue;
         }
         world.at_rest[slot] = 1;
-        colliders.update_place(slot, world.bodies.pose[body].orientation);
-        set_frame(world, slot, 0.0f);
-        bound_collider(world, slot, {}, half_margin(colliders.info[slot]), world.fixed_boxes.push_back({}));
+        bound_one(world, slot, batch);
+        mark_boxed(world, slot);
+        set_box(world.fixed_boxes.push_back({}), slot, batch, 0);
     }
 }
 
 }  // namespace
+
+void set_frame(WorldData& world, uint32_t slot) {
+    BoundBatch batch = batch_of(world, 0.0f);
+    bound_one(world, slot, batch);
+}
 
 void update_bounds(WorldData& world, float dt) {
     if (world.fixed_changed) bound_fixed(world);
@@ -135,10 +128,9 @@ void update_bounds(WorldData& world, float dt) {
     }
     world.renewed.resize_unset(movers.size());
     world.tasks.for_each(movers.count(), colliders_per_task, [&](int begin, int end, int) {
-        for (int i = begin; i < end; ++i) {
-            size_t k = static_cast<size_t>(i);
-            world.renewed[k] = bound_mover(world, movers[k], dt) ? 1 : 0;
-        }
+        BoundBatch batch = batch_of(world, dt);
+        for (int i = begin; i < end; i += body_batch)
+            bound_movers(world, i, std::min(i + body_batch, end), batch);
     });
     for (size_t i = 0; i < movers.size(); ++i)
         if (world.renewed[i]) world.changed_boxes.push_back(world.box_place[movers[i]]);

@@ -1,9 +1,11 @@
 // Stages 5 and 7: awake bodies and their contacts into the solver's packed arrays, and back.
+#include <algorithm>
 #include <atomic>
 
 #include "base/prefetch.h"
 #include "dynamics/free_flight.h"
 #include "math/decay.h"
+#include "math/kept_sum.h"
 #include "world/narrow/manifold_records.h"
 #include "world/validate.h"
 #include "world/world_data.h"
@@ -12,9 +14,6 @@ namespace lendulet {
 namespace {
 
 constexpr int bodies_per_task = 256, contacts_per_task = 512;
-
-void put(float* p, Vec3 v) { p[0] = v.x, p[1] = v.y, p[2] = v.z; }
-Vec3 get(const float* p) { return {p[0], p[1], p[2]}; }
 
 // How many substeps of its own a body takes in one of the setting: 1, 2, 4, 8, or less than one. What is kept from step
 // to step, impulses and changes, is in units of the setting's substep.
@@ -33,84 +32,41 @@ float freedom(const WorldData& world, uint32_t slot) {
     return l.meets_moving ? -1.0f : 0.0f;
 }
 
-void pack_body(WorldData& world, uint32_t slot, float dt) {
-    const BodyStore& bodies = world.bodies;
-    const BodyInfo& info = bodies.info[slot];
-    const BodyMass& mass = bodies.mass[slot];
+// What gravity and applied forces give a body in a second, and what damping leaves of it.
+struct Push {
+    Vec3 acceleration, torque;
+};
+Push push_on(const WorldData& world, uint32_t slot, Vec3 plain_gravity, float dt) {
+    const BodyInfo& info = world.bodies.info[slot];
+    if (!info.has_forces && info.gravity_factor == 1.0f) return {plain_gravity, {}};
+    return {acceleration(world, slot, dt), torque(world, slot, dt)};
+}
+// What only gravity acts on gets.
+Vec3 plain_gravity(const WorldData& world, float dt) { return limited(world.config.gravity, 2.0f * max_speed / dt); }
+
+void put(float (*p)[body_batch], int i, Vec3 v) { p[0][i] = v.x, p[1][i] = v.y, p[2][i] = v.z; }
+
+void set_lane(PackBatch& batch, int i, const WorldData& world, uint32_t slot, Vec3 gravity, float dt) {
+    const BodyInfo& info = world.bodies.info[slot];
+    const bool dynamic = info.type == BodyType::dynamic;
     const float share = 1.0f / multiple(world, info.solver_index);
-    const float h = share * dt / static_cast<float>(world.config.solver_steps);
-    size_t k = static_cast<size_t>(info.solver_index);
-    bool dynamic = info.type == BodyType::dynamic;
-    BodyStart start{};
-    put(start.v, bodies.velocity(slot));
-    put(start.w, bodies.angular_velocity(slot));
-    world.solver_bodies.start[k] = start;
-    BodyPlace place{};
-    put(place.x, from_origin(bodies.pose[slot].position));
-    put(place.x_low, bodies.momenta[slot].x_low);
-    world.solver_bodies.place[k] = place;
-    BodyState s{};
-    s.inverse_mass = dynamic ? mass.inverse_mass : 0.0f;
-    put(s.dq, bodies.momenta[slot].turn_low);
-    s.dq[3] = 1.0f;
-    world.solver_bodies.state[k] = s;
-
-    BodyInertia inertia{};
+    batch.body[i] = static_cast<int32_t>(slot);
+    batch.place[i] = info.solver_index;
+    batch.dynamic[i] = dynamic ? 1.0f : 0.0f;
+    batch.share[i] = share;
+    batch.free[i] = dynamic ? freedom(world, slot) : 1.0f;
+    Decay linear{0.0f, 1.0f}, angular{0.0f, 1.0f};
+    Push push{};
     if (dynamic) {
-        SymMat3 m = bodies.inverse_inertia_world(slot);
-        float packed[6] = {m.xx, m.yy, m.zz, m.xy, m.xz, m.yz};
-        for (int c = 0; c < 6; ++c) inertia.inverse[c] = packed[c];
+        push = push_on(world, slot, gravity, dt);
+        const float h = share * dt / static_cast<float>(world.config.solver_steps);
+        if (info.linear_damping > 0.0f) linear = decay(info.linear_damping, h);
+        if (info.angular_damping > 0.0f) angular = decay(info.angular_damping, h);
     }
-    world.solver_bodies.inertia[k] = inertia;
-
-    BodyMotion m{};
-    Quat q = bodies.pose[slot].orientation;
-    m.q0[0] = q.x, m.q0[1] = q.y, m.q0[2] = q.z, m.q0[3] = q.w;
-    m.anisotropy = 1.0f;
-    m.free = 1.0f;
-    if (dynamic) {
-        m.free = freedom(world, slot);
-        Decay linear = decay(info.linear_damping, h), angular = decay(info.angular_damping, h);
-        put(m.inertia, mass.inertia);
-        put(m.inverse_inertia, mass.inverse_inertia);
-        m.linear_loss = linear.loss;
-        m.angular_loss = angular.loss;
-        m.anisotropy = mass.anisotropy;
-        put(m.angular_momentum, bodies.momenta[slot].L);
-        put(m.acceleration, linear.mean * acceleration(world, slot, dt));
-        put(m.torque, angular.mean * torque(world, slot, dt));
-        put(m.change_v, share * bodies.change[slot].v);
-        put(m.change_L, share * bodies.change[slot].L);
-    }
-    world.solver_bodies.motion[k] = m;
-}
-
-// p += dp and x += dx with the rounding error kept (Kahan 1965): a body that glides far from the origin would lose a
-// share of every step, always the same one.
-void add_momentum(BodyMomenta& m, Vec3 dp) {
-    Vec3 y = dp - m.p_low, t = m.p + y;
-    m.p_low = (t - m.p) - y;
-    m.p = t;
-}
-void add_displacement(Position& x, Vec3& low, Vec3 dx) {
-    Vec3 y = dx - low;
-    Position t = x + y;
-    low = (t - x) - y;
-    x = t;
-}
-// q <- dq q, where dq began with what rounding q took before, and leaves that anew in `low`. An orientation is rounded
-// to 6e-8 rad, in every step again and not evenly: in ten minutes of steps of 1/240 s a top fell by 0.015 degrees.
-void add_turn(Quat& q, Vec3& low, Quat dq) {
-    // dq (1 + half of what |q| lacks of 1) - 1, without cancellation.
-    const float grow = dq.w > 0.0f ? -(dq.x * dq.x + dq.y * dq.y + dq.z * dq.z) / (1.0f + dq.w) : dq.w - 1.0f;
-    const double x = q.x, y = q.y, z = q.z, w = q.w;
-    const auto lack = static_cast<float>(0.5 * (1.0 - (x * x + y * y + z * z + w * w)));
-    const Quat d = Quat{dq.x + lack * dq.x, dq.y + lack * dq.y, dq.z + lack * dq.z, grow + lack * dq.w} * q;
-    const Quat t{q.x + d.x, q.y + d.y, q.z + d.z, q.w + d.w};
-    const Quat lost{d.x - (t.x - q.x), d.y - (t.y - q.y), d.z - (t.z - q.z), d.w - (t.w - q.w)};
-    const Quat turn = lost * conjugate(t);
-    low = {turn.x, turn.y, turn.z};
-    q = t;
+    batch.linear_loss[i] = linear.loss;
+    batch.angular_loss[i] = angular.loss;
+    put(batch.acceleration, i, linear.mean * push.acceleration);
+    put(batch.torque, i, angular.mean * push.torque);
 }
 
 // Impulses of contacts with more substeps from units of the setting's substep to those of their own, or back: powers of
@@ -139,7 +95,9 @@ void fly(WorldData& world, uint32_t slot, float dt) {
     float h = dt / static_cast<float>(world.config.solver_steps);
     for (int i = 0; i < world.config.solver_steps; ++i) s = advance(s, body, world.config.integrator, h);
     BodyMomenta& momenta = bodies.momenta[slot];
-    add_displacement(bodies.pose[slot].position, momenta.x_low, s.x);
+    Vec3 x = from_origin(bodies.pose[slot].position);
+    add_kept(x, momenta.x_low, s.x);
+    bodies.pose[slot].position = at(x);
     bodies.pose[slot].orientation = s.q;
     momenta.turn_low = {};
     momenta.p = s.p;
@@ -182,39 +140,61 @@ void sort_by_class(WorldData& world) {
     }
 }
 
-void unpack_body(WorldData& world, uint32_t slot, float dt) {
+void set_lane(UnpackBatch& batch, int i, const WorldData& world, uint32_t slot, Vec3 gravity, float dt) {
+    const BodyInfo& info = world.bodies.info[slot];
+    const bool dynamic = info.type == BodyType::dynamic;
+    batch.body[i] = static_cast<int32_t>(slot);
+    batch.place[i] = info.solver_index;
+    batch.dynamic[i] = dynamic ? 1.0f : 0.0f;
+    batch.substeps[i] = multiple(world, info.solver_index);
+    Vec3 gain;
+    batch.loss[i] = 0.0f;
+    if (dynamic && world.solver_bodies.motion[static_cast<size_t>(info.solver_index)].free > 0.0f) {
+        const Decay whole = decay(info.linear_damping, dt);
+        gain = (whole.mean * dt * world.bodies.mass[slot].mass) * push_on(world, slot, gravity, dt).acceleration;
+        batch.loss[i] = whole.loss;
+    }
+    put(batch.gain, i, gain);
+}
+
+// Cuts a speed that may be too large; a body whose state is not finite is put back and stopped, so that it cannot spoil
+// others.
+void contain(WorldData& world, uint32_t slot, const Pose& before) {
     BodyStore& bodies = world.bodies;
-    const BodyInfo& info = bodies.info[slot];
-    const BodyState& s = world.solver_bodies.state[static_cast<size_t>(info.solver_index)];
-    const BodyMotion& m = world.solver_bodies.motion[static_cast<size_t>(info.solver_index)];
-    bool dynamic = info.type == BodyType::dynamic;
-    if (dynamic && m.free > 0.0f && world.config.integrator != Integrator::momentum) {
-        fly(world, slot, dt);
-        return;
-    }
-    Pose& pose = bodies.pose[slot];
-    BodyMomenta& momenta = bodies.momenta[slot];
-    add_displacement(pose.position, momenta.x_low, get(s.dp));
-    add_turn(pose.orientation, momenta.turn_low, {s.dq[0], s.dq[1], s.dq[2], s.dq[3]});
-    if (!dynamic) return;
-    if (m.free > 0.0f) {  // exactly: m g dt, not what is left of it after adding to a large velocity
-        Decay whole = decay(info.linear_damping, dt);
-        add_momentum(momenta, (whole.mean * dt * bodies.mass[slot].mass) * acceleration(world, slot, dt) -
-                                  whole.loss * momenta.p);
-    } else {
-        add_momentum(momenta, bodies.mass[slot].mass * get(s.v));
-    }
-    momenta.L = get(m.angular_momentum);
-    float substeps = multiple(world, info.solver_index);
-    bodies.change[slot] = {substeps * get(m.change_v), substeps * get(m.change_L)};
+    BodyInfo& info = bodies.info[slot];
+    info.capped |= info.type == BodyType::dynamic && cap_speed(bodies, slot);
+    const BodyMomenta& m = bodies.momenta[slot];
+    const Pose& pose = bodies.pose[slot];
+    info.contained = !(is_finite(from_origin(pose.position)) && is_finite(m.p) && is_finite(m.L) &&
+                       dot(pose.orientation, pose.orientation) < 2.0f);
+    if (!info.contained) return;
+    bodies.pose[slot] = before;
+    bodies.momenta[slot] = {};
+    bodies.change[slot] = {};
+}
+
+// Whether a body goes by the chosen reference integrator: nothing constrains it.
+bool flies(const WorldData& world, uint32_t slot) {
+    const BodyInfo& info = world.bodies.info[slot];
+    return world.config.integrator != Integrator::momentum && info.type == BodyType::dynamic &&
+           world.solver_bodies.motion[static_cast<size_t>(info.solver_index)].free > 0.0f;
 }
 
 }  // namespace
 
 void pack_bodies(WorldData& world, float dt) {
     const Array<uint32_t>& list = world.awake;
+    const Vec3 gravity = plain_gravity(world, dt);
     world.tasks.for_each(list.count(), bodies_per_task, [&](int begin, int end, int) {
-        for (int i = begin; i < end; ++i) pack_body(world, list[static_cast<size_t>(i)], dt);
+        PackBatch batch;
+        batch.bodies = columns(world.bodies);
+        batch.packed = &world.solver_bodies;
+        for (int first = begin; first < end; first += body_batch) {
+            batch.count = std::min(end - first, body_batch);
+            for (int i = 0; i < filled(batch.count); ++i)
+                set_lane(batch, i, world, list[static_cast<size_t>(first + std::min(i, batch.count - 1))], gravity, dt);
+            world.body_kernels.pack(batch);
+        }
     });
     if (world.has_packed_kinematic) tie_kinematic(world);
 }
@@ -292,30 +272,40 @@ void unpack_bodies(WorldData& world, float dt, bool forces_end) {
     BodyStore& bodies = world.bodies;
     const Array<uint32_t>& list = world.awake;
     Array<Pose>& start = world.continuous.start;
-    const bool watched = world.config.continuous;
-    if (watched) start.resize_unset(static_cast<size_t>(world.solver_bodies.count - reserved_bodies));
+    start.resize_unset(static_cast<size_t>(world.solver_bodies.count - reserved_bodies));
+    const Vec3 gravity = plain_gravity(world, dt);
     std::atomic<int> capped{0}, contained{0};
     world.tasks.for_each(list.count(), bodies_per_task, [&](int begin, int end, int) {
-        for (int i = begin; i < end; ++i) {
-            const uint32_t slot = list[static_cast<size_t>(i)];
-            BodyInfo& info = bodies.info[slot];
-            const Pose before = bodies.pose[slot];
-            if (watched) start[static_cast<size_t>(info.solver_index - reserved_bodies)] = before;
-            unpack_body(world, slot, dt);
-            info.capped |= info.type == BodyType::dynamic && cap_speed(bodies, slot);
-            const BodyMomenta& m = bodies.momenta[slot];
-            const Pose& pose = bodies.pose[slot];
-            bool sound = is_finite(from_origin(pose.position)) && is_finite(m.p) && is_finite(m.L) &&
-                         dot(pose.orientation, pose.orientation) < 2.0f;
-            info.contained = !sound;
-            if (!sound) {  // put back and stopped, so that it cannot spoil others
-                bodies.pose[slot] = before;
-                bodies.momenta[slot] = {};
-                bodies.change[slot] = {};
+        UnpackBatch batch;
+        batch.bodies = columns(bodies);
+        batch.packed = &world.solver_bodies;
+        batch.before = start.data();
+        batch.most_speed = max_speed, batch.most_spin = max_angular_speed;
+        for (int first = begin; first < end; first += body_batch) {
+            batch.count = std::min(end - first, body_batch);
+            const uint32_t* slots = list.data() + first;
+            BodyMomenta momenta[body_batch];
+            BodyChange changes[body_batch];
+            for (int i = 0; i < filled(batch.count); ++i)
+                set_lane(batch, i, world, slots[std::min(i, batch.count - 1)], gravity, dt);
+            for (int i = 0; i < batch.count && world.config.integrator != Integrator::momentum; ++i)
+                momenta[i] = bodies.momenta[slots[i]], changes[i] = bodies.change[slots[i]];
+            world.body_kernels.unpack(batch);
+            for (int i = 0; i < batch.count; ++i) {
+                const uint32_t slot = slots[i];
+                BodyInfo& info = bodies.info[slot];
+                const Pose& before = start[static_cast<size_t>(info.solver_index - reserved_bodies)];
+                const bool flown = flies(world, slot);
+                if (flown) {
+                    bodies.pose[slot] = before, bodies.momenta[slot] = momenta[i], bodies.change[slot] = changes[i];
+                    fly(world, slot, dt);
+                }
+                info.contained = false;
+                if (flown || batch.doubtful[i] > 0.0f) contain(world, slot, before);
+                if (forces_end && info.has_forces) bodies.forces[slot] = {}, info.has_forces = false;
+                if (info.capped) capped.fetch_add(1, std::memory_order_relaxed);
+                if (info.contained) contained.fetch_add(1, std::memory_order_relaxed);
             }
-            if (forces_end) bodies.forces[slot] = {}, info.has_forces = false;
-            if (info.capped) capped.fetch_add(1, std::memory_order_relaxed);
-            if (info.contained) contained.fetch_add(1, std::memory_order_relaxed);
         }
     });
     world.statistics.capped_bodies = capped.load(std::memory_order_relaxed);

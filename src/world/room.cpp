@@ -24,7 +24,7 @@ void make_bodies_ready(WorldData& world, size_t bodies) {
     BodyStore& b = world.bodies;
     ColliderStore& c = world.colliders;
     make_ready(bodies, b.pose, b.momenta, b.mass, b.forces, b.change, b.info, b.principal);
-    make_ready(bodies, c.geometry, c.local, c.surface, c.info, c.place);
+    make_ready(bodies, c.geometry, c.local, c.surface, c.info);
     make_ready(bodies, world.moving_boxes, world.box_place, world.changed_boxes, world.renewed, world.at_rest,
                world.frames);
     make_ready(bodies, world.movers.bodies, world.movers.colliders, world.movers.merged, world.waking);

@@ -79,6 +79,7 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       query_scene(&memory),
       frames(&memory),
       narrow_kernels(lendulet::narrow_kernels(settings.width)),
+      body_kernels(lendulet::body_kernels(settings.width)),
       narrow_scratch(&memory),
       records(&memory),
       found_separations(&memory),

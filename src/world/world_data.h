@@ -16,7 +16,9 @@
 #include "solver/contact.h"
 #include "solver/joints/joint.h"
 #include "solver/solver.h"
+#include "world/body_lanes/kernels.h"
 #include "world/continuous.h"
+#include "world/limits.h"
 #include "world/movers.h"
 #include "world/narrow/kernels.h"
 #include "world/pairs.h"
@@ -151,6 +153,7 @@ struct WorldData {
 
     Array<ShapeFrame> frames;  // what the narrow phase reads of colliders, by slot
     const NarrowKernels& narrow_kernels;
+    const BodyKernels& body_kernels;
     Array<NarrowScratch> narrow_scratch;  // one a worker
 
     // Manifolds, kept in place from step to step: each pair has its own stretch.
@@ -277,9 +280,8 @@ void remove_joints_of(WorldData& world, uint32_t body);
 // The body takes part in the steps from now on; or not any more, as it is about to be removed.
 void add_mover(WorldData& world, uint32_t slot);
 void remove_mover(WorldData& world, uint32_t slot);
-// Sets what the narrow phase reads of a collider, whose place is up to date; `turn`: by how much the body turns within
-// the step, rad.
-void set_frame(WorldData& world, uint32_t collider, float turn);
+// Sets what the narrow phase reads of a collider that does not move.
+void set_frame(WorldData& world, uint32_t collider);
 // Whether two colliders whose boxes overlap are a pair.
 bool wanted(const WorldData& world, const BoxPair& p);
 // A new pair of two colliders, with what does not change while it lasts; its number.
@@ -308,16 +310,5 @@ Vec3 torque(const WorldData& world, uint32_t slot, float dt);
 Vec3 limited(Vec3 v, float most);
 // Cuts p and L to the greatest speeds below; true where one was too large.
 bool cap_speed(BodyStore& bodies, uint32_t slot);
-
-// Speeds beyond these are cut (and counted): positions in single precision do not resolve such motion.
-inline constexpr float max_speed = 1e4f;          // m/s
-inline constexpr float max_angular_speed = 3e3f;  // rad/s, about 200 turns per step at 60 Hz
-// Surfaces this close are already given contact points, so that resting contacts are not found anew every step.
-inline constexpr float contact_margin = 0.02f;  // m; less for small bodies
-// Contacts are not sought for the turning of bodies that turn farther than this in a step, rad: continuous collision
-// finds where they touch.
-inline constexpr float most_foreseen_turn = 1.5f;
-// Positions beyond this have a resolution worse than a millimetre-sized contact needs.
-inline constexpr float world_extent = 1e7f;  // m
 
 }  // namespace lendulet

@@ -136,6 +136,14 @@ template <WideFloat F>
 LENDULET_FORCE_INLINE Vec3T<F> absolute(Vec3T<F> a) {
     return {absolute(a.x), absolute(a.y), absolute(a.z)};
 }
+template <WideFloat F>
+LENDULET_FORCE_INLINE Vec3T<F> minimum(Vec3T<F> a, Vec3T<F> b) {
+    return {minimum(a.x, b.x), minimum(a.y, b.y), minimum(a.z, b.z)};
+}
+template <WideFloat F>
+LENDULET_FORCE_INLINE Vec3T<F> maximum(Vec3T<F> a, Vec3T<F> b) {
+    return {maximum(a.x, b.x), maximum(a.y, b.y), maximum(a.z, b.z)};
+}
 
 // Bit i is set where lane i of a mask is.
 LENDULET_FORCE_INLINE uint32_t mask_bits(bool mask) { return mask ? 1u : 0u; }

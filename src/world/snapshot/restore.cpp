@@ -138,10 +138,8 @@ void apply_body(WorldData& world, uint32_t slot, const SavedBody& b) {
 
 // A sleeping body has not moved since the step before: its frames are where it is.
 void apply_frames(WorldData& world, uint32_t slot) {
-    for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next) {
-        world.colliders.update_place(c, world.bodies.pose[slot].orientation);
-        set_frame(world, c, 0.0f);
-    }
+    for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next)
+        set_frame(world, c);
 }
 
 void apply_bodies(WorldData& world, const SavedState& state) {
