@@ -41,36 +41,18 @@ struct BlockLanes {
     }
 };
 
-// Bodies all of whose moments are equal. The first one tells all, in any orientation; lanes that are not round go by
-// the whole tensor, and what a lane does never depends on its neighbours.
+// Theta w for bodies turned by dq since the start of the step. Where all moments are equal that asks for no
+// orientation.
 template <int W>
-struct RoundLanes {
-    decltype(Wide<float, W>{} <= Wide<float, W>{}) some;
-    bool all;
-    LENDULET_FORCE_INLINE explicit RoundLanes(const BlockLanes<W>& body)
-        : some(body.get(body.block.anisotropy) <= splat<Wide<float, W>>(1.0f)), all(mask_bits(some) == (1u << W) - 1) {}
-};
-
-// Theta w for bodies turned by what `turned` gives since the start of the step.
-template <int W, class Turned>
-LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> apply_moments(const RoundLanes<W>& round, const BlockLanes<W>& body,
-                                                          Vec3T<Wide<float, W>> w, Turned&& turned) {
+LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> apply_moments(QuatT<Wide<float, W>> dq, const BlockLanes<W>& body,
+                                                          Vec3T<Wide<float, W>> w) {
     using F = Wide<float, W>;
     const BodyBlock& b = body.block;
     const Vec3T<F> moments = body.get(b.inertia);
     const Vec3T<F> of_round = moments.x * w;
-    if (round.all) return of_round;
-    return select(round.some, of_round, apply_principal(multiply(turned(), body.get(b.q0)), moments, w));
-}
-
-// Theta^-1 L; `inverse` is that of this substep, and unset where all lanes are round.
-template <int W>
-LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> apply_inverse(const RoundLanes<W>& round, const BlockLanes<W>& body,
-                                                          const SymMat3T<Wide<float, W>>& inverse,
-                                                          Vec3T<Wide<float, W>> L) {
-    const Vec3T<Wide<float, W>> of_round = body.get(body.block.inverse_inertia[0]) * L;
-    if (round.all) return of_round;
-    return select(round.some, of_round, inverse * L);
+    auto round = body.get(b.anisotropy) <= splat<F>(1.0f);
+    if (mask_bits(round) == (1u << W) - 1) return of_round;
+    return select(round, of_round, apply_principal(multiply(dq, body.get(b.q0)), moments, w));
 }
 
 // L and what constraints changed it by, with what rounding added (Kahan 1965): many small changes of one direction
@@ -160,12 +142,12 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int
         JointMode<F> mode{};
         if (k.joints) mode = joint_mode(y.get(b.joints));
         Vec3T<F> L = y.get(b.L), dv = zero_vector<F>(), dL = dv;
-        const RoundLanes<W> round(y);
-        SymMat3T<F> I{};
-        if (!round.all || k.joints) I = load_inverse_inertia<W>(bodies.inertia.data(), c.index);
         if (!k.first) {
+            Vec3T<F> dp;
+            QuatT<F> dq;
+            load_displacement<W>(bodies.state.data(), c.index, dp, dq);
             Vec3T<F> rv = x.v - y.get(b.v_ref), rw = x.w - y.get(b.w_ref);
-            Vec3T<F> more_L = apply_moments(round, y, rw, [&] { return load_turn<W>(bodies.state.data(), c.index); });
+            Vec3T<F> more_L = apply_moments<W>(dq, y, rw);
             dv = y.get(b.dv) + rv;
             dL = y.get(b.dL) + more_L;
             L = add_to_L<W>(y, more_L);
@@ -178,15 +160,16 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int
         if (k.joints && k.first) h = select(mode.split > zero, splat<F>(0.5f) * h, h);
         Vec3T<F> start_w = y.get(b.start_w);
         L = L - y.get(b.angular_loss) * L + h * y.get(b.torque);
+        SymMat3T<F> I = load_inverse_inertia<W>(bodies.inertia.data(), c.index);
         Vec3T<F> push = h * y.get(b.acceleration) - y.get(b.linear_loss) * (y.get(b.start_v) + x.v);
         x.v = x.v + select(movable, push, zero_vector<F>());
-        x.w = select(movable, apply_inverse(round, y, I, L) - start_w, x.w);
+        x.w = select(movable, I * L - start_w, x.w);
         if (k.joints) {
             F scale = select(mode.split > zero, splat<F>(k.repeat_scale), splat<F>(1.0f));
             dv = scale * dv;
             dL = scale * dL;
         }
-        Vec3T<F> dw = apply_inverse(round, y, I, dL);
+        Vec3T<F> dw = I * dL;
         if (k.joints) {
             auto tumbles = y.get(b.anisotropy) > splat<F>(1.0f);
             store_gyro<W>(bodies, c.index, I, select(tumbles, L + dL, zero_vector<F>()), start_w + (x.w + dw));
@@ -252,8 +235,7 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
         const Vec3T<F> inverse = y.get(b.inverse_inertia), start_w = y.get(b.start_w), start_v = y.get(b.start_v);
         F anisotropy = y.get(b.anisotropy), free = y.get(b.free);
         Vec3T<F> dv = x.v - y.get(b.v_ref), dw = x.w - y.get(b.w_ref);
-        const RoundLanes<W> round(y);
-        Vec3T<F> more_L = apply_moments(round, y, dw, [&] { return dq; });
+        Vec3T<F> more_L = apply_moments<W>(dq, y, dw);
         Vec3T<F> L = add_to_L<W>(y, more_L);
         if (may_exceed(start_v + x.v, most_speed) ||
             may_exceed(start_w + x.w, most_spin)) {  // and nothing of it is repeated
@@ -279,15 +261,15 @@ void drift_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, in
         y.put(b.dL, more_L);
         Vec3T<F> moved = splat<F>(k.h) * (start_v + (x.v - half * change_v));
         dp = dp + moved;
-        // That of round bodies, which stays.
-        SymMat3T<F> I{inverse.x, inverse.x, inverse.x, zero, zero, zero};
-        if (!round.all) {
-            const SymMat3T<F> now = load_inverse_inertia<W>(bodies.inertia.data(), c.index);
-            I = select(round.some, I, now);
-        }
+        auto round = anisotropy <= splat<F>(1.0f);
+        const bool all_round = mask_bits(round) == (1u << W) - 1;
+        SymMat3T<F> I = load_inverse_inertia<W>(bodies.inertia.data(), c.index);
         dq = turn_at_constant_L<W>(dq, q0, L - half * change_L, inverse, start_w + x.w, anisotropy, I, k.h);
-        if (!round.all)
-            I = select(round.some, I, rotate_diagonal(rotation_matrix<F>(multiply(dq, q0), splat<F>(1.0f)), inverse));
+        if (!all_round) {
+            const SymMat3T<F> turned = rotate_diagonal(rotation_matrix<F>(multiply(dq, q0), splat<F>(1.0f)), inverse);
+            I = {select(round, I.xx, turned.xx), select(round, I.yy, turned.yy), select(round, I.zz, turned.zz),
+                 select(round, I.xy, turned.xy), select(round, I.xz, turned.xz), select(round, I.yz, turned.yz)};
+        }
         const bool second_half = k.joints && k.last;
         if (second_half) {
             F h = splat<F>(0.5f * k.h) * mode.split;
@@ -327,7 +309,7 @@ void settle_bodies(SolverBodies& bodies, int begin, int end) {
         QuatT<F> dq;
         load_displacement<W>(bodies.state.data(), c.index, dp, dq);
         Vec3T<F> rw = x.w - y.get(b.w_ref);
-        Vec3T<F> L = y.get(b.L) + apply_moments(RoundLanes<W>(y), y, rw, [&] { return dq; });
+        Vec3T<F> L = y.get(b.L) + apply_moments<W>(dq, y, rw);
         Vec3T<F> change_v = x.v - y.get(b.v_start), change_L = L - y.get(b.L_start);
         F momentum[4] = {L.x, L.y, L.z, y.get(b.anisotropy)};
         F changes[8] = {change_v.x, change_v.y, change_v.z, zero, change_L.x, change_L.y, change_L.z, zero};

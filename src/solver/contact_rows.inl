@@ -94,40 +94,39 @@ struct WideVelocity {
 
 template <int W>
 LENDULET_FORCE_INLINE WideVelocity<Wide<float, W>> load_velocity(const BodyState* s, const int32_t* i) {
-    Wide<float, W> p[8];
-    gather8<W>(floats_of(s), i, 16, 0, p);
-    return {{p[0], p[1], p[2]}, {p[4], p[5], p[6]}, p[3], p[7]};
+    Wide<float, W> p[4], q[4];
+    gather4<W>(floats_of(s), i, 16, 0, p);
+    gather4<W>(floats_of(s), i, 16, 4, q);
+    return {{p[0], p[1], p[2]}, {q[0], q[1], q[2]}, p[3], q[3]};
 }
 template <int W>
 LENDULET_FORCE_INLINE void store_velocity(BodyState* s, const int32_t* i, const WideVelocity<Wide<float, W>>& x) {
-    Wide<float, W> p[8] = {x.v.x, x.v.y, x.v.z, x.inverse_mass, x.w.x, x.w.y, x.w.z, x.drift_x};
-    scatter8<W>(floats_of(s), i, 16, 0, p);
+    Wide<float, W> p[4] = {x.v.x, x.v.y, x.v.z, x.inverse_mass}, q[4] = {x.w.x, x.w.y, x.w.z, x.drift_x};
+    scatter4<W>(floats_of(s), i, 16, 0, p);
+    scatter4<W>(floats_of(s), i, 16, 4, q);
 }
 template <int W>
 LENDULET_FORCE_INLINE WideVelocity<Wide<float, W>> load_start(const BodyStart* s, const int32_t* i) {
-    Wide<float, W> p[8];
-    gather8<W>(floats_of(s), i, 8, 0, p);
-    return {{p[0], p[1], p[2]}, {p[4], p[5], p[6]}, p[3], p[7]};
+    Wide<float, W> p[4], q[4];
+    gather4<W>(floats_of(s), i, 8, 0, p);
+    gather4<W>(floats_of(s), i, 8, 4, q);
+    return {{p[0], p[1], p[2]}, {q[0], q[1], q[2]}, p[3], q[3]};
 }
 template <int W>
 LENDULET_FORCE_INLINE SymMat3T<Wide<float, W>> load_inverse_inertia(const BodyInertia* s, const int32_t* i) {
-    Wide<float, W> p[8];
-    gather8<W>(floats_of(s), i, 8, 0, p);
-    return {p[0], p[1], p[2], p[3], p[4], p[5]};
+    Wide<float, W> p[4], q[4];
+    gather4<W>(floats_of(s), i, 8, 0, p);
+    gather4<W>(floats_of(s), i, 8, 4, q);
+    return {p[0], p[1], p[2], p[3], q[0], q[1]};
 }
 template <int W>
 LENDULET_FORCE_INLINE void load_displacement(const BodyState* s, const int32_t* i, Vec3T<Wide<float, W>>& dp,
                                              QuatT<Wide<float, W>>& dq) {
-    Wide<float, W> p[8];
-    gather8<W>(floats_of(s), i, 16, 8, p);
-    dp = {p[0], p[1], p[2]};
-    dq = {p[4], p[5], p[6], p[7]};
-}
-template <int W>
-LENDULET_FORCE_INLINE QuatT<Wide<float, W>> load_turn(const BodyState* s, const int32_t* i) {
-    Wide<float, W> q[4];
+    Wide<float, W> p[4], q[4];
+    gather4<W>(floats_of(s), i, 16, 8, p);
     gather4<W>(floats_of(s), i, 16, 12, q);
-    return {q[0], q[1], q[2], q[3]};
+    dp = {p[0], p[1], p[2]};
+    dq = {q[0], q[1], q[2], q[3]};
 }
 // The same for the places that contact rows keep.
 template <int W>

@@ -81,12 +81,6 @@ LENDULET_FORCE_INLINE QuatT<F> select(M mask, QuatT<F> a, QuatT<F> b) {
     return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z), select(mask, a.w, b.w)};
 }
 
-template <class M, class F>
-LENDULET_FORCE_INLINE SymMat3T<F> select(M mask, const SymMat3T<F>& a, const SymMat3T<F>& b) {
-    return {select(mask, a.xx, b.xx), select(mask, a.yy, b.yy), select(mask, a.zz, b.zz),
-            select(mask, a.xy, b.xy), select(mask, a.xz, b.xz), select(mask, a.yz, b.yz)};
-}
-
 // The x86 instructions are exactly these selections, NaN and -0 included.
 template <WideFloat F>
 LENDULET_FORCE_INLINE F maximum(F a, F b) {

@@ -82,9 +82,10 @@ struct BodyLanes {
     }
     LENDULET_FORCE_INLINE SymMat3T<F> inverse_inertia_world() const {
         const auto round = anisotropy <= splat<F>(1.0f);
-        const F zero = splat<F>(0.0f);
-        const SymMat3T<F> of_round{inverse_inertia.x, inverse_inertia.x, inverse_inertia.x, zero, zero, zero};
-        if (mask_bits(round) == (1u << W) - 1) return of_round;
-        return select(round, of_round, rotate_diagonal(rotation_matrix<F>(q, splat<F>(1.0f)), inverse_inertia));
+        const F zero = splat<F>(0.0f), same = inverse_inertia.x;
+        if (mask_bits(round) == (1u << W) - 1) return {same, same, same, zero, zero, zero};
+        const SymMat3T<F> I = rotate_diagonal(rotation_matrix<F>(q, splat<F>(1.0f)), inverse_inertia);
+        return {select(round, same, I.xx), select(round, same, I.yy), select(round, same, I.zz),
+                select(round, zero, I.xy), select(round, zero, I.xz), select(round, zero, I.yz)};
     }
 };
