@@ -129,8 +129,7 @@ void update_bounds(WorldData& world, float dt) {
     world.renewed.resize_unset(movers.size());
     world.tasks.for_each(movers.count(), colliders_per_task, [&](int begin, int end, int) {
         BoundBatch batch = batch_of(world, dt);
-        for (int i = begin; i < end; i += body_batch)
-            bound_movers(world, i, std::min(i + body_batch, end), batch);
+        for (int i = begin; i < end; i += body_batch) bound_movers(world, i, std::min(i + body_batch, end), batch);
     });
     for (size_t i = 0; i < movers.size(); ++i)
         if (world.renewed[i]) world.changed_boxes.push_back(world.box_place[movers[i]]);

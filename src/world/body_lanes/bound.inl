@@ -15,7 +15,8 @@ LENDULET_FORCE_INLINE F holds(F side, F held, float sign, F leeway) {
     return select(side == held, one, select(beyond >= zero, select(beyond <= leeway, one, zero), zero));
 }
 
-// Half extents of a ball, a capsule or a box, turned. |R| half: sizes of the first two are those of boxes without width.
+// Half extents of a ball, a capsule or a box, turned. |R| half: sizes of the first two are those of boxes without
+// width.
 template <class F>
 LENDULET_FORCE_INLINE Vec3T<F> turned_half(QuatT<F> rotation, Vec3T<F> half) {
     const Mat3T<F> r = rotation_matrix<F>(rotation, splat<F>(1.0f));
@@ -47,19 +48,18 @@ void bound_colliders(BoundBatch& batch) {
         // Where a body turns that far, points found now say nothing of where it will touch: stop_at_impacts() does.
         const F at_most = minimum(turn, two);
         const F turning = select(turn <= splat<F>(batch.most_foreseen_turn), at_most * reach, zero);
-        const F frame[24] = {rotation.x, rotation.y,    rotation.z,    rotation.w,    body.x.x, body.x.y,
-                             body.x.z,   near,          v.x,           v.y,           v.z,      turning,
-                             arm.x,      arm.y,         arm.z,         reach,         size.x,   size.y,
-                             size.z,     rounding,      radius,        body.x_low.x,  body.x_low.y, body.x_low.z};
+        const F frame[24] = {rotation.x, rotation.y, rotation.z, rotation.w,   body.x.x,     body.x.y,
+                             body.x.z,   near,       v.x,        v.y,          v.z,          turning,
+                             arm.x,      arm.y,      arm.z,      reach,        size.x,       size.y,
+                             size.z,     rounding,   radius,     body.x_low.x, body.x_low.y, body.x_low.z};
         for (int k = 0; k < 24; k += 8) scatter8<W>(floats_of(batch.frames), collider, frame_stride, k, frame + k);
 
         // The margin between two colliders is the sum of half of each one's.
         F grow = splat<F>(0.5f) * near;
         const F leeway = select(fixed, zero, splat<F>(box_leeway) * grow);
         const Vec3T<F> sweep = splat<F>(batch.dt) * v;
-        const F fall =
-            splat<F>(0.5f * batch.dt) *
-            minimum(splat<F>(batch.fall) * absolute(lanes(batch.gravity_factor)), splat<F>(batch.most_fall));
+        const F fall = splat<F>(0.5f * batch.dt) *
+                       minimum(splat<F>(batch.fall) * absolute(lanes(batch.gravity_factor)), splat<F>(batch.most_fall));
         // A turning shape reaches no farther than its radius about the body's centre, nor than the arc it runs through.
         grow = grow + (fall + select(turn > splat<F>(0.05f), at_most * outmost, zero));
         const auto given = lanes(batch.given) > zero;

@@ -34,18 +34,18 @@ LENDULET_FORCE_INLINE BodyColumns columns(BodyStore& bodies) {
 // Colliders: their frames, and boxes around them through the step.
 struct BoundBatch {
     BodyColumns bodies;
-    const Transform* local;    // by collider, as the next two
+    const Transform* local;  // by collider, as the next two
     const Geometry* geometry;
-    ShapeFrame* frames;        // out
-    const BroadBox* boxes;     // by place: as they are
+    ShapeFrame* frames;     // out
+    const BroadBox* boxes;  // by place: as they are
     float dt;
     float fall, most_fall;     // speed that gravity gives within the step, and the most that it may, m/s
     float most_foreseen_turn;  // rad
     int count = 0;
     int32_t collider[body_batch], body[body_batch];
-    int32_t box[body_batch];  // place
+    int32_t box[body_batch];                         // place
     float kinematic[body_batch], fixed[body_batch];  // 1 or 0
-    float unboxed[body_batch];                            // 1: has no box yet
+    float unboxed[body_batch];                       // 1: has no box yet
     float gravity_factor[body_batch], radius[body_batch];
     // 1 for shapes other than balls, capsules and boxes: the box relative to the collider is given.
     float given[body_batch], given_centre[3][body_batch], given_half[3][body_batch];
@@ -59,8 +59,8 @@ struct PackBatch {
     SolverBodies* packed;
     int count = 0;
     int32_t body[body_batch], place[body_batch];
-    float dynamic[body_batch];  // 1 or 0
-    float share[body_batch];    // of its substep in one of the setting
+    float dynamic[body_batch];                                                  // 1 or 0
+    float share[body_batch];                                                    // of its substep in one of the setting
     float free[body_batch], linear_loss[body_batch], angular_loss[body_batch];  // as in BodyMotion
     float acceleration[3][body_batch], torque[3][body_batch];
 };

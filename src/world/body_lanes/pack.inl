@@ -24,8 +24,14 @@ void pack_lanes(PackBatch& batch) {
         put(to.state, 0, changes);
         put(to.state, 8, moved);
         const SymMat3T<F> I = body.inverse_inertia_world();
-        const F inertia[8] = {of_dynamic(I.xx), of_dynamic(I.yy), of_dynamic(I.zz), of_dynamic(I.xy),
-                              of_dynamic(I.xz), of_dynamic(I.yz), zero,             zero};
+        const F inertia[8] = {of_dynamic(I.xx),
+                              of_dynamic(I.yy),
+                              of_dynamic(I.zz),
+                              of_dynamic(I.xy),
+                              of_dynamic(I.xz),
+                              of_dynamic(I.yz),
+                              zero,
+                              zero};
         put(to.inertia, 0, inertia);
 
         F change[8];
