@@ -37,7 +37,8 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
     F sticking = c.static_friction * total, sliding = c.dynamic_friction * total;
     F size2 = f1 * f1 + f2 * f2;
     auto slides = size2 > sticking * sticking;
-    F scale = select(slides, zero, one);
+    // Without load nothing sticks, also where the square of what slides is too small a number.
+    F scale = select(slides, zero, select(total > zero, one, zero));
     auto drags = select(slides, sliding, zero) > zero;
     if (mask_bits(drags)) scale = select(drags, sliding / maximum(square_root(size2), splat<F>(1e-30f)), scale);
     f1 = scale * f1;

@@ -9,6 +9,7 @@ namespace lendulet {
 namespace {
 
 constexpr int colliders_per_task = 256;
+constexpr BroadBox unset_box{{}, no_box, {}, 0u};
 
 BoundBatch batch_of(WorldData& world, float dt) {
     BoundBatch batch;
@@ -57,65 +58,67 @@ void mark_boxed(WorldData& world, uint32_t slot) {
     if (!info.boxed) info.boxed = true, info.boxed_at = static_cast<uint32_t>(world.steps);
 }
 
-// Of one collider, whose box in the broad phase is none of those that move.
-void bound_one(WorldData& world, uint32_t slot, BoundBatch& batch) {
+// Frames of at most body_batch colliders; no boxes.
+void frame_batch(WorldData& world, const uint32_t* slots, int count, BoundBatch& batch) {
     const BroadBox none{};
     batch.boxes = &none;
-    batch.count = 1;
-    for (int i = 0; i < filled(1); ++i) {
-        set_lane(batch, i, world, slot);
+    batch.count = count;
+    for (int i = 0; i < filled(count); ++i) {
+        set_lane(batch, i, world, slots[std::min(i, count - 1)]);
         batch.box[i] = 0;
         batch.unboxed[i] = 1.0f;
     }
     world.body_kernels.bound(batch);
 }
 
-// Colliders [begin, end) of the movers.
-void bound_movers(WorldData& world, int begin, int end, BoundBatch& batch) {
-    const uint32_t* slots = world.movers.colliders.data() + begin;
-    batch.count = end - begin;
-    for (int i = 0; i < filled(batch.count); ++i) {
-        const uint32_t slot = slots[i < batch.count ? i : batch.count - 1];
+// And their boxes, those that change, among `boxes`; a new one has no index there yet.
+void bound_batch(WorldData& world, const uint32_t* slots, int count, Array<BroadBox>& boxes, BoundBatch& batch) {
+    batch.boxes = boxes.data();
+    batch.count = count;
+    for (int i = 0; i < filled(count); ++i) {
+        const uint32_t slot = slots[std::min(i, count - 1)], place = world.box_place[slot];
         set_lane(batch, i, world, slot);
-        batch.box[i] = static_cast<int32_t>(world.box_place[slot]);
-        batch.unboxed[i] = world.moving_boxes[world.box_place[slot]].index == slot ? 0.0f : 1.0f;
+        batch.box[i] = static_cast<int32_t>(place);
+        batch.unboxed[i] = boxes[place].index == slot ? 0.0f : 1.0f;
         mark_boxed(world, slot);
     }
     world.body_kernels.bound(batch);
-    for (int i = 0; i < batch.count; ++i) {
-        const bool renewed = batch.renewed[i] > 0.0f;
-        world.renewed[static_cast<size_t>(begin + i)] = renewed;
-        if (renewed) set_box(world.moving_boxes[static_cast<size_t>(batch.box[i])], slots[i], batch, i);
-    }
+    for (int i = 0; i < count; ++i)
+        if (batch.renewed[i] > 0.0f) set_box(boxes[world.box_place[slots[i]]], slots[i], batch, i);
 }
 
 // Colliders that have come or gone; the others have not moved.
 void bound_fixed(WorldData& world) {
-    ColliderStore& colliders = world.colliders;
+    const ColliderStore& colliders = world.colliders;
     world.fixed_boxes.swap(world.fixed_boxes_before);
     world.fixed_boxes.clear();
     BoundBatch batch = batch_of(world, 0.0f);
+    uint32_t fresh[body_batch];
+    int count = 0;
+    auto bound_fresh = [&] {
+        if (count > 0) bound_batch(world, fresh, count, world.fixed_boxes, batch);
+        count = 0;
+    };
     for (uint32_t slot : colliders.slots.order()) {
         uint32_t body = colliders.info[slot].body;
         if (world.bodies.info[body].type != BodyType::fixed) continue;
         const uint32_t before = world.box_place[slot];
         world.box_place[slot] = static_cast<uint32_t>(world.fixed_boxes.size());
-        if (before != no_box) {
-            world.fixed_boxes.push_back(world.fixed_boxes_before[before]);
-            continue;
-        }
+        world.fixed_boxes.push_back(before == no_box ? unset_box : world.fixed_boxes_before[before]);
+        if (before != no_box) continue;
         world.at_rest[slot] = 1;
-        bound_one(world, slot, batch);
-        mark_boxed(world, slot);
-        set_box(world.fixed_boxes.push_back({}), slot, batch, 0);
+        fresh[count++] = slot;
+        if (count == body_batch) bound_fresh();
     }
+    bound_fresh();
 }
 
 }  // namespace
 
-void set_frame(WorldData& world, uint32_t slot) {
+void set_frames(WorldData& world, const Array<uint32_t>& colliders) {
     BoundBatch batch = batch_of(world, 0.0f);
-    bound_one(world, slot, batch);
+    for_each_batch(0, colliders.count(),
+                   [&](int first, int count) { frame_batch(world, colliders.data() + first, count, batch); });
 }
 
 void update_bounds(WorldData& world, float dt) {
@@ -124,12 +127,16 @@ void update_bounds(WorldData& world, float dt) {
     for (uint32_t slot : movers) {
         if (world.box_place[slot] != no_box) continue;
         world.box_place[slot] = static_cast<uint32_t>(world.moving_boxes.size());
-        world.moving_boxes.push_back({{}, no_box, {}, 0u});
+        world.moving_boxes.push_back(unset_box);
     }
     world.renewed.resize_unset(movers.size());
     world.tasks.for_each(movers.count(), colliders_per_task, [&](int begin, int end, int) {
         BoundBatch batch = batch_of(world, dt);
-        for (int i = begin; i < end; i += body_batch) bound_movers(world, i, std::min(i + body_batch, end), batch);
+        for_each_batch(begin, end, [&](int first, int count) {
+            bound_batch(world, movers.data() + first, count, world.moving_boxes, batch);
+            for (int i = 0; i < count; ++i)
+                world.renewed[static_cast<size_t>(first + i)] = batch.renewed[i] > 0.0f ? 1 : 0;
+        });
     });
     for (size_t i = 0; i < movers.size(); ++i)
         if (world.renewed[i]) world.changed_boxes.push_back(world.box_place[movers[i]]);

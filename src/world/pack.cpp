@@ -173,13 +173,6 @@ void contain(WorldData& world, uint32_t slot, const Pose& before) {
     bodies.change[slot] = {};
 }
 
-// Whether a body goes by the chosen reference integrator: nothing constrains it.
-bool flies(const WorldData& world, uint32_t slot) {
-    const BodyInfo& info = world.bodies.info[slot];
-    return world.config.integrator != Integrator::momentum && info.type == BodyType::dynamic &&
-           world.solver_bodies.motion[static_cast<size_t>(info.solver_index)].free > 0.0f;
-}
-
 }  // namespace
 
 void pack_bodies(WorldData& world, float dt) {
@@ -189,12 +182,13 @@ void pack_bodies(WorldData& world, float dt) {
         PackBatch batch;
         batch.bodies = columns(world.bodies);
         batch.packed = &world.solver_bodies;
-        for (int first = begin; first < end; first += body_batch) {
-            batch.count = std::min(end - first, body_batch);
-            for (int i = 0; i < filled(batch.count); ++i)
-                set_lane(batch, i, world, list[static_cast<size_t>(first + std::min(i, batch.count - 1))], gravity, dt);
+        for_each_batch(begin, end, [&](int first, int count) {
+            const uint32_t* slots = list.data() + first;
+            batch.count = count;
+            for (int i = 0; i < filled(count); ++i)
+                set_lane(batch, i, world, slots[std::min(i, count - 1)], gravity, dt);
             world.body_kernels.pack(batch);
-        }
+        });
     });
     if (world.has_packed_kinematic) tie_kinematic(world);
 }
@@ -268,6 +262,41 @@ void forget_impulses(WorldData& world) {
 
 }  // namespace
 
+namespace {
+
+// Whether a body goes by the chosen reference integrator: nothing constrains it.
+bool flies(const WorldData& world, uint32_t slot) {
+    const BodyInfo& info = world.bodies.info[slot];
+    return world.config.integrator != Integrator::momentum && info.type == BodyType::dynamic &&
+           world.solver_bodies.motion[static_cast<size_t>(info.solver_index)].free > 0.0f;
+}
+
+// At most body_batch bodies.
+void unpack_batch(WorldData& world, const uint32_t* slots, int count, Vec3 gravity, float dt, UnpackBatch& batch) {
+    BodyStore& bodies = world.bodies;
+    batch.count = count;
+    for (int i = 0; i < filled(count); ++i) set_lane(batch, i, world, slots[std::min(i, count - 1)], gravity, dt);
+    BodyMomenta momenta[body_batch];
+    BodyChange changes[body_batch];
+    for (int i = 0; i < count; ++i)
+        if (flies(world, slots[i])) momenta[i] = bodies.momenta[slots[i]], changes[i] = bodies.change[slots[i]];
+    world.body_kernels.unpack(batch);
+    for (int i = 0; i < count; ++i) {
+        const uint32_t slot = slots[i];
+        bodies.info[slot].contained = false;
+        const bool flown = flies(world, slot);
+        if (!flown && !(batch.doubtful[i] > 0.0f)) continue;
+        const Pose& before = batch.before[batch.place[i] - reserved_bodies];
+        if (flown) {
+            bodies.pose[slot] = before, bodies.momenta[slot] = momenta[i], bodies.change[slot] = changes[i];
+            fly(world, slot, dt);
+        }
+        contain(world, slot, before);
+    }
+}
+
+}  // namespace
+
 void unpack_bodies(WorldData& world, float dt, bool forces_end) {
     BodyStore& bodies = world.bodies;
     const Array<uint32_t>& list = world.awake;
@@ -281,31 +310,15 @@ void unpack_bodies(WorldData& world, float dt, bool forces_end) {
         batch.packed = &world.solver_bodies;
         batch.before = start.data();
         batch.most_speed = max_speed, batch.most_spin = max_angular_speed;
-        for (int first = begin; first < end; first += body_batch) {
-            batch.count = std::min(end - first, body_batch);
-            const uint32_t* slots = list.data() + first;
-            BodyMomenta momenta[body_batch];
-            BodyChange changes[body_batch];
-            for (int i = 0; i < filled(batch.count); ++i)
-                set_lane(batch, i, world, slots[std::min(i, batch.count - 1)], gravity, dt);
-            for (int i = 0; i < batch.count && world.config.integrator != Integrator::momentum; ++i)
-                momenta[i] = bodies.momenta[slots[i]], changes[i] = bodies.change[slots[i]];
-            world.body_kernels.unpack(batch);
-            for (int i = 0; i < batch.count; ++i) {
-                const uint32_t slot = slots[i];
-                BodyInfo& info = bodies.info[slot];
-                const Pose& before = start[static_cast<size_t>(info.solver_index - reserved_bodies)];
-                const bool flown = flies(world, slot);
-                if (flown) {
-                    bodies.pose[slot] = before, bodies.momenta[slot] = momenta[i], bodies.change[slot] = changes[i];
-                    fly(world, slot, dt);
-                }
-                info.contained = false;
-                if (flown || batch.doubtful[i] > 0.0f) contain(world, slot, before);
-                if (forces_end && info.has_forces) bodies.forces[slot] = {}, info.has_forces = false;
-                if (info.capped) capped.fetch_add(1, std::memory_order_relaxed);
-                if (info.contained) contained.fetch_add(1, std::memory_order_relaxed);
-            }
+        for_each_batch(begin, end, [&](int first, int count) {
+            unpack_batch(world, list.data() + first, count, gravity, dt, batch);
+        });
+        for (int i = begin; i < end; ++i) {
+            const uint32_t slot = list[static_cast<size_t>(i)];
+            BodyInfo& info = bodies.info[slot];
+            if (forces_end && info.has_forces) bodies.forces[slot] = {}, info.has_forces = false;
+            if (info.capped) capped.fetch_add(1, std::memory_order_relaxed);
+            if (info.contained) contained.fetch_add(1, std::memory_order_relaxed);
         }
     });
     world.statistics.capped_bodies = capped.load(std::memory_order_relaxed);

@@ -280,8 +280,8 @@ void remove_joints_of(WorldData& world, uint32_t body);
 // The body takes part in the steps from now on; or not any more, as it is about to be removed.
 void add_mover(WorldData& world, uint32_t slot);
 void remove_mover(WorldData& world, uint32_t slot);
-// Sets what the narrow phase reads of a collider that does not move.
-void set_frame(WorldData& world, uint32_t collider);
+// Sets what the narrow phase reads of colliders, by slot, whose bodies are taken as not moving within the step.
+void set_frames(WorldData& world, const Array<uint32_t>& colliders);
 // Whether two colliders whose boxes overlap are a pair.
 bool wanted(const WorldData& world, const BoxPair& p);
 // A new pair of two colliders, with what does not change while it lasts; its number.

@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Determinism,
                                          "height_field:60", "tumbler:4", "newtons_cradle", "stack:50",
                                          "mass_ratio:1000", "domino_spiral:20", "brick_tower:4", "arch:9",
                                          "card_house:2", "ragdoll_avalanche:4", "bridge:12", "car", "gear_train:3",
-                                         "walker", "hourglass:60", "marble_machine:12", "t_handle"),
+                                         "walker", "hourglass:60", "marble_machine:40", "t_handle"),
                          [](const testing::TestParamInfo<const char*>& info) {
                              std::string name = info.param;
                              for (char& c : name)

@@ -69,8 +69,7 @@ struct PackBatch {
 struct UnpackBatch {
     BodyColumns bodies;
     const SolverBodies* packed;
-    Pose* before;  // by place less the reserved ones: poses at the start of the step
-    float dt;
+    Pose* before;  // out, by place less the reserved ones: poses at the start of the step
     float most_speed, most_spin;
     int count = 0;
     int32_t body[body_batch], place[body_batch];
@@ -83,6 +82,13 @@ struct UnpackBatch {
 
 // To how many entries a batch of `count` is filled.
 LENDULET_FORCE_INLINE constexpr int filled(int count) { return (count + 15) / 16 * 16; }
+
+// Calls run(first, count) for batches of what stands at [begin, end) of a list.
+template <class Run>
+LENDULET_FORCE_INLINE void for_each_batch(int begin, int end, Run&& run) {
+    for (int first = begin; first < end; first += body_batch)
+        run(first, end - first < body_batch ? end - first : body_batch);
+}
 
 struct BodyKernels {
     int width;

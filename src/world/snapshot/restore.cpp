@@ -136,18 +136,13 @@ void apply_body(WorldData& world, uint32_t slot, const SavedBody& b) {
     world.island_loads[slot] = load;
 }
 
-// A sleeping body has not moved since the step before: its frames are where it is.
-void apply_frames(WorldData& world, uint32_t slot) {
-    for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next)
-        set_frame(world, c);
-}
-
 void apply_bodies(WorldData& world, const SavedState& state) {
     world.island_loads.resize(world.bodies.slots.capacity());
     world.frames.resize(world.colliders.slots.capacity());
     world.at_rest.resize(world.frames.size());
     Movers& movers = world.movers;
     movers.bodies.clear();
+    Array<uint32_t> colliders(&world.memory);
     size_t next = 0;
     for (uint32_t slot : world.bodies.slots.order()) {
         const SavedBody& saved = state.bodies[next++];
@@ -157,10 +152,12 @@ void apply_bodies(WorldData& world, const SavedState& state) {
         if (saved.mover) movers.bodies.push_back(slot);
         else info.solver_index = static_body;
         if (!saved.fixed) apply_body(world, slot, saved);
-        apply_frames(world, slot);
-        for (uint32_t c = info.first_collider; c != no_slot; c = world.colliders.info[c].next)
+        for (uint32_t c = info.first_collider; c != no_slot; c = world.colliders.info[c].next) {
             world.at_rest[c] = saved.mover ? 0 : 1;
+            colliders.push_back(c);
+        }
     }
+    set_frames(world, colliders);  // what sleeps has not moved since the step before: its frames are where it is
     movers.sorted = movers.bodies.size();
     movers.leaving = movers.joints_changed = true;  // to be listed anew
 }
