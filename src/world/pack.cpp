@@ -32,7 +32,7 @@ float freedom(const WorldData& world, uint32_t slot) {
     return l.meets_moving ? -1.0f : 0.0f;
 }
 
-// What gravity and applied forces give a body in a second, and what damping leaves of it.
+// What gravity and applied forces do to a body, before damping.
 struct Push {
     Vec3 acceleration, torque;
 };
@@ -41,7 +41,7 @@ Push push_on(const WorldData& world, uint32_t slot, Vec3 plain_gravity, float dt
     if (!info.has_forces && info.gravity_factor == 1.0f) return {plain_gravity, {}};
     return {acceleration(world, slot, dt), torque(world, slot, dt)};
 }
-// What only gravity acts on gets.
+// The acceleration of a body on which gravity acts as it is and nothing else.
 Vec3 plain_gravity(const WorldData& world, float dt) { return limited(world.config.gravity, 2.0f * max_speed / dt); }
 
 void put(float (*p)[body_batch], int i, Vec3 v) { p[0][i] = v.x, p[1][i] = v.y, p[2][i] = v.z; }
