@@ -27,7 +27,7 @@ template <class F>
 LENDULET_FORCE_INLINE F largest(Vec3T<F> v) {
     return maximum(v.x, maximum(v.y, v.z));
 }
-// `a` from records of seven floats: a vector and a quaternion, in either order. No load reaches beyond a record.
+// Records of seven floats: a vector and a quaternion. No load reaches beyond a record.
 template <int W>
 LENDULET_FORCE_INLINE void gather7(const float* base, const int32_t* index, Wide<float, W> out[7]) {
     Wide<float, W> end[4];

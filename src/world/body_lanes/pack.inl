@@ -10,7 +10,6 @@ void pack_lanes(PackBatch& batch) {
         const int32_t *slot = batch.body + i, *place = batch.place + i;
         const BodyLanes<W> body(batch.bodies, slot);
         const auto dynamic = lanes(batch.dynamic) > zero, kinematic = lanes(batch.dynamic) <= zero;
-        const auto of_dynamic = [&](F x) { return select(dynamic, x, zero); };
         const auto put = [&](auto& array, int offset, const F* values) {
             scatter8<W>(floats_of(array.data()), place, sizeof(array[0]) / sizeof(float), offset, values);
         };
@@ -19,60 +18,36 @@ void pack_lanes(PackBatch& batch) {
         put(to.start, 0, start);
         const F at[8] = {body.x.x, body.x.y, body.x.z, zero, body.x_low.x, body.x_low.y, body.x_low.z, zero};
         put(to.place, 0, at);
-        const F changes[8] = {zero, zero, zero, of_dynamic(body.inverse_mass), zero, zero, zero, zero};
+        const F changes[8] = {zero, zero, zero, select(dynamic, body.inverse_mass, zero), zero, zero, zero, zero};
         const F moved[8] = {zero, zero, zero, zero, body.turn_low.x, body.turn_low.y, body.turn_low.z, one};
         put(to.state, 0, changes);
         put(to.state, 8, moved);
         const SymMat3T<F> I = body.inverse_inertia_world();
-        const F inertia[8] = {of_dynamic(I.xx),
-                              of_dynamic(I.yy),
-                              of_dynamic(I.zz),
-                              of_dynamic(I.xy),
-                              of_dynamic(I.xz),
-                              of_dynamic(I.yz),
-                              zero,
-                              zero};
-        put(to.inertia, 0, inertia);
+        const Vec3T<F> none = zero_vector<F>();
+        const Vec3T<F> d = select(dynamic, Vec3T<F>{I.xx, I.yy, I.zz}, none);
+        const Vec3T<F> o = select(dynamic, Vec3T<F>{I.xy, I.xz, I.yz}, none);
+        const F tensor[8] = {d.x, d.y, d.z, o.x, o.y, o.z, zero, zero};
+        put(to.inertia, 0, tensor);
 
         F change[8];
         gather4<W>(floats_of(batch.bodies.change), slot, change_floats, 0, change);
         gather4<W>(floats_of(batch.bodies.change), slot, change_floats, 2, change + 4);
-        const F share = lanes(batch.share);
-        const Vec3T<F> change_v = share * Vec3T<F>{change[0], change[1], change[2]};
-        const Vec3T<F> change_L = share * Vec3T<F>{change[5], change[6], change[7]};
+        const F share = lanes(batch.share), anisotropy = select(dynamic, body.anisotropy, one);
+        const Vec3T<F> change_v = select(dynamic, share * Vec3T<F>{change[0], change[1], change[2]}, none);
+        const Vec3T<F> change_L = select(dynamic, share * Vec3T<F>{change[5], change[6], change[7]}, none);
+        const Vec3T<F> inertia = select(dynamic, body.inertia, none), L = select(dynamic, body.L, none);
+        const Vec3T<F> inverse = select(dynamic, body.inverse_inertia, none);
         const Vec3T<F> a = load_vector<F>(batch.acceleration, i), t = load_vector<F>(batch.torque, i);
-        const F motion[32] = {body.q.x,
-                              body.q.y,
-                              body.q.z,
-                              body.q.w,
-                              of_dynamic(body.inertia.x),
-                              of_dynamic(body.inertia.y),
-                              of_dynamic(body.inertia.z),
-                              lanes(batch.linear_loss),
-                              of_dynamic(body.inverse_inertia.x),
-                              of_dynamic(body.inverse_inertia.y),
-                              of_dynamic(body.inverse_inertia.z),
-                              lanes(batch.angular_loss),
-                              of_dynamic(body.L.x),
-                              of_dynamic(body.L.y),
-                              of_dynamic(body.L.z),
-                              select(dynamic, body.anisotropy, one),
-                              a.x,
-                              a.y,
-                              a.z,
-                              lanes(batch.free),
-                              t.x,
-                              t.y,
-                              t.z,
-                              zero,
-                              of_dynamic(change_v.x),
-                              of_dynamic(change_v.y),
-                              of_dynamic(change_v.z),
-                              zero,
-                              of_dynamic(change_L.x),
-                              of_dynamic(change_L.y),
-                              of_dynamic(change_L.z),
-                              zero};
-        for (int k = 0; k < 32; k += 8) put(to.motion, k, motion + k);
+        const QuatT<F> q = body.q;
+        const F linear_loss = lanes(batch.linear_loss), angular_loss = lanes(batch.angular_loss);
+        const F free = lanes(batch.free);
+        const F turned[8] = {q.x, q.y, q.z, q.w, inertia.x, inertia.y, inertia.z, linear_loss};
+        const F turning[8] = {inverse.x, inverse.y, inverse.z, angular_loss, L.x, L.y, L.z, anisotropy};
+        const F pushed[8] = {a.x, a.y, a.z, free, t.x, t.y, t.z, zero};
+        const F changed[8] = {change_v.x, change_v.y, change_v.z, zero, change_L.x, change_L.y, change_L.z, zero};
+        put(to.motion, 0, turned);
+        put(to.motion, 8, turning);
+        put(to.motion, 16, pushed);
+        put(to.motion, 24, changed);
     }
 }

@@ -38,6 +38,21 @@ LENDULET_FORCE_INLINE F sum_of(Vec3T<F> v) {
     return v.x + v.y + v.z;
 }
 
+// 1 where all numbers are finite and no speed is too large. Nearly all bodies are slow, and neither square overflows
+// unless they are not. Zero times what is not finite is NaN.
+template <class F>
+LENDULET_FORCE_INLINE F is_sound(const UnpackBatch& batch, Vec3T<F> x, QuatT<F> q, Vec3T<F> p, Vec3T<F> L,
+                                 F inverse_mass, Vec3T<F> inverse_inertia) {
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f), turning = largest(inverse_inertia);
+    const F speed = inverse_mass * inverse_mass * dot(p, p), spin = turning * turning * dot(L, L);
+    const F finite = (zero * sum_of(x) + zero * sum_of(p)) + zero * sum_of(L);
+    const F size = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+    const auto within = [&](F a, F most) { return select(a <= most, one, zero); };
+    return (within(speed, splat<F>(batch.most_speed * batch.most_speed)) *
+            within(spin, splat<F>(batch.most_spin * batch.most_spin))) *
+           (select(size < splat<F>(2.0f), one, zero) * within(finite, zero));
+}
+
 template <int W>
 void unpack_lanes(UnpackBatch& batch) {
     using F = Wide<float, W>;
@@ -83,15 +98,7 @@ void unpack_lanes(UnpackBatch& batch) {
         scatter4<W>(floats_of(batch.bodies.change), slot, change_floats, 0, change);
         scatter4<W>(floats_of(batch.bodies.change), slot, change_floats, 2, change + 2);
 
-        // Nearly all are slow, and neither square overflows unless they are not. Zero times what is not finite is NaN.
-        const F inverse = mass[1], turning = largest(vector_of(mass + 5));
-        const F speed = inverse * inverse * dot(p, p), spin = turning * turning * dot(L, L);
-        const F finite = (zero * sum_of(x) + zero * sum_of(p)) + zero * sum_of(L);
-        const F size = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
-        const auto within = [&](F a, F most) { return select(a <= most, one, zero); };
-        const F sound = (within(speed, splat<F>(batch.most_speed * batch.most_speed)) *
-                         within(spin, splat<F>(batch.most_spin * batch.most_spin))) *
-                        (select(size < splat<F>(2.0f), one, zero) * within(finite, zero));
+        const F sound = is_sound(batch, x, q, p, L, mass[1], vector_of(mass + 5));
         store_wide(batch.doubtful + i, one - sound);
     }
 }
