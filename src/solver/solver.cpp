@@ -69,7 +69,7 @@ void Solver::for_each_between(TaskPool& tasks, Run&& run) const {
 template <class Run>
 void Solver::for_each_group(TaskPool& tasks, Run&& run) const {
     const int tiles = schedule_.tiles.count;
-    tasks.share(tiles, 1, [&](int begin, int end, int) {
+    tasks.for_each(tiles, 1, [&](int begin, int end, int) {
         run_groups(schedule_.first_group(begin), schedule_.last_group(end - 1), run);
     });
     for_each_between(tasks, run);
@@ -82,7 +82,7 @@ void Solver::for_each_tile(TaskPool& tasks, BodyRange range, Run&& run) const {
         for_each_body_block(tasks, range, [&](int begin, int end) { run(0, BodyRange{begin, end}); });
         return;
     }
-    tasks.share(tiles.count, 1, [&](int begin, int end, int) {
+    tasks.for_each(tiles.count, 1, [&](int begin, int end, int) {
         for (int tile = begin; tile < end; ++tile) run(tile, tiles.bodies(tile));
     });
 }
