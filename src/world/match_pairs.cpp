@@ -74,18 +74,19 @@ bool is_new(const WorldData& world, uint32_t collider) {
 void compare_all(WorldData& world) {
     PairTable& table = world.pairs;
     table.sort(world.box_pairs);
-    size_t at = 0, fresh = 0;
+    size_t at = 0, kept = 0, fresh = 0;
     auto key = [](const auto& p) { return uint64_t{p.a} << 32 | p.b; };
     for (const BoxPair& p : world.box_pairs) {
-        while (at < table.listed.size() && key(table.listed[at]) < key(p)) end_pair(world, table.listed[at++].pair);
+        while (at < table.listed.size() && key(table.listed[at]) < key(p)) table.take_off(table.listed[at++].pair);
         if (at < table.listed.size() && key(table.listed[at]) == key(p)) {
-            ++at;
+            table.listed[kept++] = table.listed[at++];
             continue;
         }
         bool resting = (world.at_rest[p.a] & world.at_rest[p.b]) != 0, come = is_new(world, p.a) || is_new(world, p.b);
         if (!resting || (come && table.find(p.a, p.b) == no_pair)) world.box_pairs[fresh++] = p;
     }
-    while (at < table.listed.size()) end_pair(world, table.listed[at++].pair);
+    while (at < table.listed.size()) table.take_off(table.listed[at++].pair);
+    table.listed.resize_unset(kept);
     world.box_pairs.resize_unset(fresh);
 }
 

@@ -11,8 +11,7 @@ bool precedes(const Pair& a, const Pair& b) {
     return a.a != b.a ? a.a < b.a : a.b < b.b;
 }
 
-constexpr int digit_bits = 11;
-constexpr uint32_t radix = 1u << digit_bits;
+constexpr int most_digit_bits = 13;  // counts that stay in the first-level cache
 
 }  // namespace
 
@@ -24,20 +23,22 @@ void PairTable::sort(Array<BoxPair>& boxes) {
     }
     uint32_t top = 0;
     for (const BoxPair& p : boxes) top |= p.a | p.b;
-    int digits = (std::bit_width(top) + digit_bits - 1) / digit_bits;
+    const int bits = std::bit_width(top), digits = (bits + most_digit_bits - 1) / most_digit_bits;
+    const int digit_bits = (bits + digits - 1) / digits;
+    const uint32_t mask = (1u << digit_bits) - 1;
     scratch_.resize_unset(boxes.size());
     for (int pass = 0; pass < 2 * digits; ++pass) {
         int shift = pass % digits * digit_bits;
         bool by_b = pass < digits;
-        counts_.assign(radix, 0u);
-        for (const BoxPair& p : boxes) ++counts_[((by_b ? p.b : p.a) >> shift) & (radix - 1)];
+        counts_.assign(mask + 1, 0u);
+        for (const BoxPair& p : boxes) ++counts_[((by_b ? p.b : p.a) >> shift) & mask];
         uint32_t sum = 0;
         for (uint32_t& c : counts_) {
             uint32_t n = c;
             c = sum;
             sum += n;
         }
-        for (const BoxPair& p : boxes) scratch_[counts_[((by_b ? p.b : p.a) >> shift) & (radix - 1)]++] = p;
+        for (const BoxPair& p : boxes) scratch_[counts_[((by_b ? p.b : p.a) >> shift) & mask]++] = p;
         boxes.swap(scratch_);
     }
 }
@@ -147,13 +148,17 @@ void PairTable::clear() {
     record_count_ = 0;
 }
 
-void PairTable::end(uint32_t number) {
+void PairTable::end(uint32_t number) { end(number, pairs[number].listed ? ended_ : free_); }
+
+void PairTable::take_off(uint32_t number) { end(number, free_); }
+
+void PairTable::end(uint32_t number, Array<uint32_t>& numbers) {
     ColliderPair& p = pairs[number];
     unhang(p.a, 2 * number);
     unhang(p.b, 2 * number + 1);
     if (p.capacity == 1) free_single_.push_back(p.first_record);
     if (p.capacity > 1) free_mesh_.push_back(p.first_record), free_surface_.push_back(p.surface);
-    (p.listed ? ended_ : free_).push_back(number);
+    numbers.push_back(number);
     p.a = no_pair;
     p.count = 0;
     p.hit = false;

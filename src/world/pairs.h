@@ -95,6 +95,8 @@ public:
     void place_records(ColliderPair& pair, bool mesh);
     // The number may be taken by another pair after the next sweep().
     void end(uint32_t number);
+    // Ends a pair whose place on the list the caller gives away.
+    void take_off(uint32_t number);
     // Forgets all pairs, for a snapshot's.
     void clear();
     // no_pair where there is none. Cost: the pairs of the collider that has fewer.
@@ -131,6 +133,7 @@ private:
     struct Links {
         uint32_t link = no_pair, count = 0;
     };
+    void end(uint32_t number, Array<uint32_t>& numbers);
     void hang(uint32_t collider, uint32_t link);
     void unhang(uint32_t collider, uint32_t link);
     void place_surface(ColliderPair& pair);
