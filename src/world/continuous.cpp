@@ -111,12 +111,14 @@ public:
     }
 
 private:
-    // Of the obstacles on the list, those whose boxes are near.
+    // Of the obstacles on the list, those whose boxes are near. What lies in a drum that turns goes along with all of its
+    // sides, which is asked but once.
     void meet_listed(const float lower[3], const float upper[3]) {
         for (const Obstacle& o : world_.continuous.obstacles) {
+            if (!moved_far(o.carrier)) continue;
             bool overlap = true;
             for (int d = 0; d < 3; ++d) overlap &= o.box.lower[d] <= upper[d] && lower[d] <= o.box.upper[d];
-            if (overlap && moved_far(o.carrier)) meet_collider(o.collider, o.carrier.path);
+            if (overlap) meet_collider(o.collider, o.carrier.path);
         }
     }
     // Those that the broad phase finds: obstacles or others, rising.
@@ -284,12 +286,9 @@ void limit_energies(WorldData& world, float dt) {
         any = any || far;
     }
     if (!any) return;
-    for (uint32_t r : world.active) {
-        const ContactRecord& record = world.records[r];
-        for (auto [mine, other] : {std::pair{record.body_a, record.body_b}, std::pair{record.body_b, record.body_a}})
-            if (mine >= reserved_bodies && other >= reserved_bodies)
-                c.is_suspect[static_cast<size_t>(mine - reserved_bodies)] = 1;
-    }
+    for (const ContactEnds& e : world.active_ends)
+        if (e.a >= reserved_bodies && e.b >= reserved_bodies)
+            for (int32_t body : {e.a, e.b}) c.is_suspect[static_cast<size_t>(body - reserved_bodies)] = 1;
     for (uint32_t body : c.suspects) {
         const size_t place = place_of(world, body);
         const BodyMotion& motion = world.solver_bodies.motion[place + reserved_bodies];
