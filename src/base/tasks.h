@@ -62,10 +62,10 @@ public:
         for_each(count, even > least ? even : least, body);
     }
 
-    // In how many parts such a loop is cut.
+    // In how many parts such a loop is cut: as many for each worker, where there is one for each.
     int parts(int count, int least) const {
         const int most = chunks_per_worker * workers_, wanted = count / (least > 0 ? least : 1);
-        return wanted < 1 ? 1 : wanted < most ? wanted : most;
+        return wanted < 1 ? 1 : wanted < workers_ ? wanted : wanted < most ? wanted / workers_ * workers_ : most;
     }
 
 private:

@@ -6,7 +6,7 @@ namespace lendulet {
 namespace {
 
 constexpr int bodies_per_task = 256;    // bodies in a chunk of a parallel loop; a multiple of 16
-constexpr int contacts_per_part = 128;  // the fewest contacts of a colour that are worth a part of a loop
+constexpr int contacts_per_part = 64;  // the fewest contacts of a colour that are worth a part of a loop
 
 // Calls run(begin, end) on parts of a range of bodies, in whole blocks.
 template <class Run>
