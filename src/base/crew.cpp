@@ -68,7 +68,7 @@ void Crew::lend(int number) {
             pause();
         }
         seen = calls_.load(std::memory_order_acquire);
-        loop_.work(number);
+        loop_.work(number, pause);
     }
 }
 
@@ -85,8 +85,8 @@ void Crew::run(int workers, int count, int grain, SharedLoop::Run run, void* con
     loop_.begin(workers < most ? workers : most, count, grain, run, context);
     calls_.fetch_add(1);
     for (int w = 1; w < workers && w < most; ++w) wake(w);
-    loop_.work(0);
     Pause pause;
+    loop_.work(0, pause);
     while (!loop_.ended()) {
         if (stopped_.load(std::memory_order_relaxed)) std::abort();
         pause();

@@ -13,7 +13,7 @@ class Crew {
 public:
     static constexpr int most = 64;  // workers, the thread that steps included
 
-    constexpr Crew() : loop_(stretches_) {}
+    constexpr Crew() : loop_(workers_) {}
     Crew(const Crew&) = delete;
     Crew& operator=(const Crew&) = delete;
     // The one of this program.
@@ -39,7 +39,7 @@ private:
     bool sleep(int number, uint32_t seen);
     void wake(int number);
 
-    SharedLoop::Stretch stretches_[most];
+    SharedLoop::Worker workers_[most];
     Bed beds_[most];
     SharedLoop loop_;
     std::atomic<uint32_t> calls_{0};  // loops so far

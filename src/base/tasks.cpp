@@ -18,6 +18,7 @@ namespace lendulet {
 struct TaskPool::Threads {};
 TaskPool::TaskPool(int workers, Hook hook) : workers_(workers < 1 ? 1 : workers), hook_(hook) {
     if (hook_.parallel_for) workers_ = hook_.workers < 1 ? 1 : hook_.workers;
+    sharing_ = workers_;
 }
 TaskPool::~TaskPool() = default;
 void TaskPool::begin_session() {}
@@ -32,6 +33,7 @@ void TaskPool::dispatch(int count, int grain, Run run, void* context) {
 struct TaskPool::Threads {};
 TaskPool::TaskPool(int, Hook hook) : hook_(hook) {
     if (hook_.parallel_for) workers_ = hook_.workers;
+    sharing_ = workers_;
 }
 TaskPool::~TaskPool() = default;
 void TaskPool::begin_session() {}
@@ -59,7 +61,7 @@ constexpr int patient_spins = 4000;  // some 50 to 100 us
 
 struct TaskPool::Threads {
     std::vector<std::thread> threads;
-    std::vector<SharedLoop::Stretch> stretches;
+    std::vector<SharedLoop::Worker> workers;
     SharedLoop loop;
     std::mutex mutex;
     std::condition_variable wake;
@@ -67,15 +69,13 @@ struct TaskPool::Threads {
     bool session = false;  // guarded by mutex for sleeping, read loosely while spinning
     std::atomic<bool> spinning{false};
 
-    explicit Threads(int workers) : stretches(static_cast<size_t>(workers)), loop(stretches.data()) {}
+    explicit Threads(int count) : workers(static_cast<size_t>(count)), loop(workers.data()) {}
 };
 
 TaskPool::TaskPool(int workers, Hook hook) : workers_(workers < 1 ? 1 : workers), hook_(hook) {
-    if (hook_.parallel_for) {
-        workers_ = hook_.workers < 1 ? 1 : hook_.workers;
-        return;
-    }
-    if (workers_ == 1) return;
+    if (hook_.parallel_for) workers_ = hook_.workers < 1 ? 1 : hook_.workers;
+    sharing_ = workers_;
+    if (hook_.parallel_for || workers_ == 1) return;
     threads_ = std::make_unique<Threads>(workers_);
     for (int i = 1; i < workers_; ++i) threads_->threads.emplace_back([this, i] { thread_main(i); });
 }
@@ -118,7 +118,7 @@ void TaskPool::dispatch(int count, int grain, Run run, void* context) {
         std::lock_guard lock(t.mutex);
         t.wake.notify_all();
     }
-    t.loop.work(0);
+    t.loop.work(0, relax_cpu);
     // Nearly always what is left ends within microseconds; only where there are more threads than cores it does not.
     for (int spins = 0; !t.loop.ended();) {
         if (++spins < patient_spins) relax_cpu();
@@ -141,7 +141,7 @@ void TaskPool::thread_main(int worker) {
             if (t.stop) return;
         }
         seen = t.loop.epoch();
-        t.loop.work(worker);
+        t.loop.work(worker, relax_cpu);
     }
 }
 

@@ -26,17 +26,43 @@ public:
     TaskPool& operator=(const TaskPool&) = delete;
 
     int workers() const { return workers_; }
+    // By how many of them loops are shared just now, see Alone.
+    int sharing() const { return sharing_; }
 
-    // Keeps the threads awake between loops from here to the end of the scope: a step is hundreds of short loops.
+    // While one of these is there and was told so, loops run on the calling thread alone: what is done in less time
+    // than it takes to share it. Results do not tell.
+    class Alone {
+    public:
+        Alone(TaskPool& pool, bool alone) : pool_(pool), before_(pool.sharing_) {
+            if (alone && !shares_all) pool.sharing_ = 1;
+        }
+        ~Alone() { pool_.sharing_ = before_; }
+        Alone(const Alone&) = delete;
+        Alone& operator=(const Alone&) = delete;
+
+    private:
+        TaskPool& pool_;
+        int before_;
+    };
+    // For tests, which are small: nothing is done alone.
+    static inline bool shares_all = false;
+
+    // Keeps the threads awake between loops from here to the end of the scope, unless all that follows is done alone: a
+    // step is hundreds of short loops.
     class Session {
     public:
-        explicit Session(TaskPool& pool) : pool_(pool) { pool_.begin_session(); }
-        ~Session() { pool_.end_session(); }
+        explicit Session(TaskPool& pool) : pool_(pool), begun_(pool.sharing_ > 1) {
+            if (begun_) pool_.begin_session();
+        }
+        ~Session() {
+            if (begun_) pool_.end_session();
+        }
         Session(const Session&) = delete;
         Session& operator=(const Session&) = delete;
 
     private:
         TaskPool& pool_;
+        bool begun_;
     };
 
     // body(begin, end, worker) over disjoint chunks of [0, count); returns when all are done. Loops of one chunk, and
@@ -44,7 +70,7 @@ public:
     template <class Body>
     void for_each(int count, int grain, Body&& body) {
         if (count <= 0) return;
-        if (workers_ == 1 || count <= grain) {
+        if (sharing_ == 1 || count <= grain) {
             body(0, count, 0);
             return;
         }
@@ -58,14 +84,14 @@ public:
     // count a worker gets the same chunks as before, if it comes in time, and finds what it wrote in its own caches.
     template <class Body>
     void share(int count, int least, Body&& body) {
-        const int even = (count + chunks_per_worker * workers_ - 1) / (chunks_per_worker * workers_);
+        const int even = (count + chunks_per_worker * sharing_ - 1) / (chunks_per_worker * sharing_);
         for_each(count, even > least ? even : least, body);
     }
 
     // In how many parts such a loop is cut: as many for each worker, where there is one for each.
     int parts(int count, int least) const {
-        const int most = chunks_per_worker * workers_, wanted = count / (least > 0 ? least : 1);
-        return wanted < 1 ? 1 : wanted < workers_ ? wanted : wanted < most ? wanted / workers_ * workers_ : most;
+        const int most = chunks_per_worker * sharing_, wanted = count / (least > 0 ? least : 1);
+        return wanted < 1 ? 1 : wanted < sharing_ ? wanted : wanted < most ? wanted / sharing_ * sharing_ : most;
     }
 
 private:
@@ -77,7 +103,7 @@ private:
     void thread_main(int worker);
 
     struct Threads;  // std::thread and its friends; absent where there are none, or where they are lent (crew.h)
-    int workers_ = 1;
+    int workers_ = 1, sharing_ = 1;
     Hook hook_;
     std::unique_ptr<Threads> threads_;
 };

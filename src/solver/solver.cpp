@@ -5,8 +5,11 @@
 namespace lendulet {
 namespace {
 
-constexpr int bodies_per_task = 256;    // bodies in a chunk of a parallel loop; a multiple of 16
+constexpr int bodies_per_task = 256;   // bodies in a chunk of a parallel loop; a multiple of 16
 constexpr int contacts_per_part = 64;  // the fewest contacts of a colour that are worth a part of a loop
+// Fewer contacts, joints and bodies in all are solved on one thread: a pass is some ten loops, which then take a
+// microsecond each, and two threads took a quarter longer for them than one.
+constexpr int fewest_shared = 2500;
 
 // Calls run(begin, end) on parts of a range of bodies, in whole blocks.
 template <class Run>
@@ -31,6 +34,10 @@ SubstepConstants substep_constants(const SolverSettings& settings) {
     return k;
 }
 
+bool Solver::is_small(int bodies) const {
+    return schedule_.order.count() + joints_.joint_count() + bodies < fewest_shared;
+}
+
 template <class Run>
 void Solver::run_groups(int first, int last, Run&& run) const {
     for (int i = first; i < last; ++i) {
@@ -48,7 +55,7 @@ void Solver::for_each_between(TaskPool& tasks, Run&& run) const {
         int blocks = 0;
         for (int i = first; i < last; ++i)
             blocks += static_cast<int>(block_count(static_cast<uint32_t>(groups[i - first].count), kernels_.width));
-        if (groups->alone || tasks.workers() == 1) {
+        if (groups->alone || tasks.sharing() == 1) {
             run_groups(first, last, run);
         } else {
             // Of every group of the colour the same share: a worker meets the same bodies in all groups and colours.
@@ -117,6 +124,7 @@ size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const 
 
 void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, std::byte* rows) {
     schedule_.place_rows(rows, records);
+    const TaskPool::Alone alone(tasks, is_small(bodies.count));
     for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
         kernels.prepare(g, records, bodies, begin, end);
     });
@@ -133,6 +141,7 @@ void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joi
 void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
                    BodyRange range) {
     if (range.begin >= range.end) return;
+    const TaskPool::Alone alone(tasks, is_small(range.end - range.begin));
     const Pass warm_start = &SolverKernels::warm_start, solve = &SolverKernels::solve, relax = &SolverKernels::relax;
     SubstepConstants k = substep_constants(settings);
     k.joints = !joints_.empty();
@@ -195,6 +204,7 @@ void Solver::coast(TaskPool& tasks, const SolverSettings& settings, SolverBodies
 }
 
 void Solver::store(TaskPool& tasks, const SolverBodies& bodies, ContactRecord* records) {
+    const TaskPool::Alone alone(tasks, is_small(bodies.count));
     for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
         kernels.store(g, records, begin, end);
     });

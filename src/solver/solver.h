@@ -102,6 +102,8 @@ public:
     size_t row_bytes() const { return schedule_.row_bytes; }
 
 private:
+    // Whether several threads would take longer than one for its contacts and joints and so many bodies.
+    bool is_small(int bodies) const;
     // Calls run(kernels, group, begin, end) for all groups [first, last).
     template <class Run>
     void run_groups(int first, int last, Run&& run) const;

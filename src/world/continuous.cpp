@@ -111,8 +111,8 @@ public:
     }
 
 private:
-    // Of the obstacles on the list, those whose boxes are near. What lies in a drum that turns goes along with all of its
-    // sides, which is asked but once.
+    // Of the obstacles on the list, those whose boxes are near. What lies in a drum that turns goes along with all of
+    // its sides, which is asked but once.
     void meet_listed(const float lower[3], const float upper[3]) {
         for (const Obstacle& o : world_.continuous.obstacles) {
             if (!moved_far(o.carrier)) continue;

@@ -52,7 +52,7 @@ void cut_contacts(WorldData& world) {
         const Tiles tiles(part.bodies);
         const bool within = lie_within(tiles, world.active_ends.data() + part.first_contact, part.row_count);
         part.cut = {within ? tiles : Tiles{}, {0, 0}};
-        if (part.cut.tiles.count == 1 && world.tasks.workers() > 1) part.cut.near = part.bodies;
+        if (part.cut.tiles.count == 1 && world.tasks.sharing() > 1) part.cut.near = part.bodies;
     }
 }
 

@@ -7,6 +7,8 @@
 namespace lendulet {
 namespace {
 
+constexpr double least_shared_ms = 0.4;    // a step that takes less on one thread gains nothing by several
+constexpr uint64_t trial = 64;             // steps after which one that several take little for is tried on one
 constexpr float longest_step = 1.0f;       // s; longer ones are cut
 constexpr float longest_update = 1000.0f;  // s
 
@@ -57,9 +59,18 @@ void prepare_solvers(WorldData& world, float dt) {
     }
 }
 
+// Whether the next step is done on one thread, by what the last one took. Results do not tell.
+bool goes_alone(const WorldData& world) {
+    if (world.steps == 0) return false;
+    const bool short_step = world.statistics.total_ms < least_shared_ms;
+    return short_step && (world.went_alone || world.steps % trial == 0);
+}
+
 // `last`: the step is the last part of an update, after which applied forces end.
 void step(WorldData& world, float dt, bool last) {
-    TaskPool::Session session(world.tasks);
+    world.went_alone = goes_alone(world);
+    const TaskPool::Alone alone(world.tasks, world.went_alone);
+    const TaskPool::Session session(world.tasks);
     StageClock clock(world.statistics);
     const SolverSettings settings{dt, world.config.solver_steps, length(world.config.gravity)};
 

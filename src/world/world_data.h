@@ -214,6 +214,7 @@ struct WorldData {
     float last_h = 0.0f;    // substep that the impulses of listed pairs belong to, s
     float joints_h = 0.0f;  // the same of the records of joints
     bool in_step = false;
+    bool went_alone = false;  // the last step was done on one thread, see step.cpp
     double time = 0.0;
     uint64_t steps = 0;
     StepStatistics statistics{};

@@ -65,6 +65,74 @@ TEST(TaskPool, WorksOutsideASessionToo) {
     }
 }
 
+TEST(TaskPool, WhatIsDoneAloneIsDoneByTheCaller) {
+    TaskPool pool(3);
+    TaskPool::shares_all = false;
+    auto loops = [&] {
+        int calls = 0;
+        const std::thread::id caller = std::this_thread::get_id();
+        pool.for_each(1000, 1, [&](int begin, int end, int worker) {
+            ++calls;  // of one thread, or the thread sanitizer tells
+            EXPECT_TRUE(begin == 0 && end == 1000 && worker == 0);
+            EXPECT_EQ(std::this_thread::get_id(), caller);
+        });
+        return calls;
+    };
+    {
+        const TaskPool::Alone shared(pool, false);
+        EXPECT_EQ(pool.sharing(), 3);
+        const TaskPool::Alone alone(pool, true);
+        EXPECT_EQ(pool.sharing(), 1);
+        EXPECT_EQ(pool.workers(), 3);
+        const TaskPool::Alone again(pool, false);
+        EXPECT_EQ(pool.sharing(), 1);
+        const TaskPool::Session session(pool);
+        EXPECT_EQ(loops(), 1);
+        EXPECT_EQ(pool.parts(1000, 1), 2);
+    }
+    EXPECT_EQ(pool.sharing(), 3);
+    EXPECT_EQ(visits(1000, [&](auto body) { pool.for_each(1000, 1, body); }), std::vector<int>(1000, 1));
+    TaskPool::shares_all = true;
+    const TaskPool::Alone alone(pool, true);
+    EXPECT_EQ(pool.sharing(), 3);
+}
+
+TEST(TaskPool, EachWorkerHasAsManyParts) {
+    const TaskPool pool(3);
+    EXPECT_EQ(pool.parts(10, 20), 1);
+    EXPECT_EQ(pool.parts(40, 20), 2);
+    EXPECT_EQ(pool.parts(60, 20), 3);
+    EXPECT_EQ(pool.parts(100, 20), 3);
+    EXPECT_EQ(pool.parts(120, 20), 6);
+    EXPECT_EQ(pool.parts(100000, 20), 6);
+}
+
+// In loops of one size everybody keeps to his stretch, and takes from others what they do not come for.
+TEST(TaskPool, StretchesStayWithTheirWorkersUnlessThoseAreLate) {
+    TaskPool pool(2);
+    TaskPool::Session session(pool);
+    std::atomic<int> strange{0};
+    constexpr int loops = 200;
+    for (int loop = 0; loop < loops; ++loop) {
+        std::atomic<int> inside{0};
+        pool.for_each(2, 1, [&](int begin, int, int worker) {
+            strange += begin != worker;
+            ++inside;  // both come, or one gives up waiting
+            for (int looks = 0; inside.load() < 2 && looks < 2000; ++looks) std::this_thread::yield();
+        });
+    }
+    // On a machine with one free core the caller takes nearly all.
+    if (std::thread::hardware_concurrency() > 1) {
+        EXPECT_LT(strange.load(), loops / 2);
+    }
+    std::atomic<int> by_caller{0};
+    pool.for_each(64, 1, [&](int, int, int worker) {
+        if (worker == 0) ++by_caller;
+        else std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    });
+    EXPECT_GT(by_caller.load(), 32);
+}
+
 TEST(TaskPool, WorkersHaveNumbersOfTheirOwn) {
     TaskPool pool(3);
     TaskPool::Session session(pool);

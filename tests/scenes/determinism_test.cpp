@@ -41,6 +41,17 @@ TEST_P(Determinism, WorkersAndWidths) {
         }
 }
 
+// Heaps so large that workers share the colours of their contacts.
+TEST(LargeHeaps, WorkersAndWidths) {
+    for (const char* name : {"box_pile:1500", "ragdolls:120"}) {
+        auto hash = [&](int workers, int width) {
+            return hash_after(name, [=](WorldBuilder& b) { b.workers(workers).width(width); });
+        };
+        const uint64_t expected = hash(1, 0);
+        for (int workers : {2, 3, 8}) EXPECT_EQ(hash(workers, workers == 3 ? 8 : 0), expected) << name << workers;
+    }
+}
+
 TEST_P(Determinism, BroadPhases) {
     uint64_t expected = hash_after(GetParam(), {});
     for (BroadPhaseType type :

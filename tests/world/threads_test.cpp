@@ -1,9 +1,11 @@
 // The user's own threads give the same bits as the world's, however the loops are cut.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <thread>
 
+#include "base/tasks.h"
 #include "world/support.h"
 
 namespace lendulet::test {
@@ -44,6 +46,44 @@ uint64_t story(const WorldBuilder& builder) {
     add_mixed_pile(world, 8);
     run(world, 40);
     return world.hash();
+}
+
+// Of loops that could have been shared.
+TaskHook counter_of(int& loops) {
+    return {&loops, 4, [](void* user, int count, int, Run run, void* context) {
+                ++*static_cast<int*>(user);
+                run(context, 0, count, 0);
+            }};
+}
+
+// Small worlds are stepped by one thread, now and then by all: nothing tells.
+TEST(Threads, WhoStepsASmallWorldDoesNotTell) {
+    const uint64_t expected = story(WorldBuilder{});
+    TaskPool::shares_all = false;
+    EXPECT_EQ(story(WorldBuilder{}.workers(3)), expected);
+    TaskPool::shares_all = true;
+}
+
+TEST(Threads, StepsThatTakeLittleAreNotShared) {
+    int loops = 0;
+    World world = WorldBuilder{}.sleep(false).tasks(counter_of(loops)).build().value();
+    add_floor(world);
+    for (int i = 0; i < 100; ++i)
+        add_cube(world, 2.0f * static_cast<float>(i % 10), 0, 2.0f * static_cast<float>(i / 10));
+    TaskPool::shares_all = false;
+    double longest = 0.0;
+    for (int step = 0; step < 200; ++step) {
+        if (step == 70) loops = 0;
+        run(world, 1);
+        if (step > 60) longest = std::max(longest, world.statistics().total_ms);
+    }
+    const int shared = loops;
+    TaskPool::shares_all = true;
+    loops = 0;
+    run(world, 1);
+    EXPECT_GT(loops, 0) << "there is something to share";
+    if (longest > 0.3) GTEST_SKIP() << "a step took " << longest << " ms here";
+    EXPECT_EQ(shared, 0);
 }
 
 TEST(Threads, OwnWorkersAndTaskHookGiveOneHash) {
