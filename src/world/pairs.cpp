@@ -189,7 +189,9 @@ void PairTable::list(uint32_t number) {
 }
 
 void PairTable::merge() {
-    std::sort(coming_.begin(), coming_.end(), precedes<ListedPair>);  // order: total
+    // Where all pairs were sought they begin in order.
+    if (!std::is_sorted(coming_.begin(), coming_.end(), precedes<ListedPair>))
+        std::sort(coming_.begin(), coming_.end(), precedes<ListedPair>);  // order: total
     merged_.resize_unset(listed.size() + coming_.size());
     std::merge(listed.begin(), listed.end(), coming_.begin(), coming_.end(), merged_.begin(), precedes<ListedPair>);
     listed.swap(merged_);
