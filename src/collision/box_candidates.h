@@ -1,6 +1,6 @@
 // Which of the fifteen separating axes of two boxes can be the best: all of them at once, in four lanes of single
 // precision, up to what rounding may change. Doubles, of which a register holds two, then decide among the few that are
-// left.
+// left. In an unnamed namespace, as the formulas of the axes are, which other sources compile for wider lanes.
 #pragma once
 
 #include "collision/batch/frame.h"

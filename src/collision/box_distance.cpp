@@ -47,8 +47,8 @@ struct Nearest {
     double gap;       // between the distance and the lower bound proven for it
 };
 
-// The point of the rim that is nearest to the origin, for the point of the plane that is is not in the face. w is the
-// middle of the face.
+// The point of the rim that is nearest to the origin, where that of the plane, at u_plane along the first edge,
+// is not in the face. w is the middle of the face.
 LENDULET_FORCE_INLINE bool nearest_on_rim(const BoxDifference& boxes, const Face& face, Lanes w, double u_plane,
                                           double max_distance, Nearest& out) {
     const Span& span = spans[face.number];

@@ -111,7 +111,7 @@ LENDULET_FORCE_INLINE bool is_deep_as(SilentObserver&, const CoreDifference& dif
     return is_deep_at_once(difference, cold, d, s, deep);
 }
 bool is_deep_as(Recorder&, const CoreDifference&, bool, Vec3d, Simplex&, Penetration&) { return false; }
-// Boxes that overlap.
+// Boxes that GJK found to overlap, or left in doubt.
 bool are_settled_as(SilentObserver&, const CoreDifference& difference, float max_distance, GjkCache& cache,
                     ConvexDistance& result) {
     return are_both(difference, GeometryKind::box) &&
