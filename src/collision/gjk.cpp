@@ -2,7 +2,7 @@
 // write witness points and the simplex to remember.
 #include "collision/gjk.h"
 
-#include "collision/box_depth.h"
+#include "collision/box_distance.h"
 #include "collision/epa.h"
 #include "collision/gjk_newton.h"
 #include "collision/gjk_search.h"
@@ -16,6 +16,8 @@ constexpr double certified_depth = 5e-6, certified_tangent = 1e-9;
 // A first support point that lies this far beyond the origin tells that the cores overlap, but for few pairs that
 // nearly touch.
 constexpr double beyond_doubt = 0.03;
+// Of S: boxes that are not farther apart begin with a face of their difference rather than with the last simplex.
+constexpr double near = 0.03;
 constexpr uint8_t all_points[4] = {0, 1, 2, 3};
 
 // Where a search begins that remembers nothing: from the middle of the difference towards the origin.
@@ -26,6 +28,7 @@ Vec3d first_direction(const CoreDifference& difference) {
 
 void remember(const Simplex& s, Vec3 direction, GjkCache& cache) {
     cache.count = static_cast<uint8_t>(s.count);
+    cache.face = 0;
     cache.direction = direction;
     for (int i = 0; i < s.count; ++i) {
         cache.a[i] = s.a[i];
@@ -95,7 +98,6 @@ Search search_as(Recorder& r, const CoreDifference& d, Simplex& s, SimplexSolver
 }
 Penetration expand_as(SilentObserver&, const CoreDifference& d, bool cold, Simplex& s) {
     Penetration deep;
-    if (are_both(d, GeometryKind::box) && closest_of_boxes(d, s, deep)) return deep;
     if (cold && are_both(d, GeometryKind::hull) && depth_of_hulls(d, s, deep)) return deep;
     return expand_polytope(d, s, d.centre());
 }
@@ -109,10 +111,13 @@ LENDULET_FORCE_INLINE bool is_deep_as(SilentObserver&, const CoreDifference& dif
     return is_deep_at_once(difference, cold, d, s, deep);
 }
 bool is_deep_as(Recorder&, const CoreDifference&, bool, Vec3d, Simplex&, Penetration&) { return false; }
-bool is_closest_as(SilentObserver&, const CoreDifference& difference, Simplex& s, Penetration& deep) {
-    return closest_of_boxes(difference, s, deep);
+// Boxes that GJK found to overlap, or left in doubt.
+bool are_settled_as(SilentObserver&, const CoreDifference& difference, float max_distance, GjkCache& cache,
+                    ConvexDistance& result) {
+    return are_both(difference, GeometryKind::box) &&
+           closest_of_boxes(BoxDifference(difference), max_distance, cache, result);
 }
-bool is_closest_as(Recorder&, const CoreDifference&, Simplex&, Penetration&) { return false; }
+bool are_settled_as(Recorder&, const CoreDifference&, float, GjkCache&, ConvexDistance&) { return false; }
 
 // Where a flat or a side of a curved core gave the last normal it mostly gives the next one too: apart, its two points
 // prove themselves; overlapping, a small polytope does.
@@ -150,24 +155,14 @@ Vec3d start(const CoreDifference& difference, const GjkCache& cache, Simplex& s)
 }
 
 template <class Observer>
-LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCache& cache, SimplexSolver method,
-                                                 float max_distance, Observer& observer) {
-    const CoreDifference difference(pair);
+LENDULET_FORCE_INLINE ConvexDistance distance_of(const CoreDifference& difference, GjkCache& cache,
+                                                 SimplexSolver method, float max_distance, Observer& observer) {
     ConvexDistance result;
     if (is_as_before(difference, cache, result)) return result;
     const bool cold = cache.count == 0;
     Simplex s;
     Penetration deep;
-    // Boxes that overlap need no search, and few that are near each other do.
-    const bool boxes = are_both(difference, GeometryKind::box), overlapped = cache.count == 4;
-    Vec3d d{};
-    if (!boxes || !overlapped) d = start(difference, cache, s);
-    if (boxes && (overlapped || is_beyond(difference, d, s, 0.0)) && is_closest_as(observer, difference, s, deep)) {
-        result = result_overlapping(difference, deep, 0);
-        remember(s, result.normal, cache);
-        return result;
-    }
-    if (s.count == 0) d = start(difference, cache, s);
+    const Vec3d d = start(difference, cache, s);
     const bool is_deep = is_deep_as(observer, difference, cold, d, s, deep);
     Search found = is_deep ? Search{Outcome::overlap, {}, {}, 0.0, 0.0, 0}
                            : search_as(observer, difference, s, method, max_distance);
@@ -176,6 +171,7 @@ LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCach
     // one, and a new search from its separating direction the other.
     bool doubtful = found.outcome == Outcome::apart && !(found.gap <= certified_distance * difference.size);
     if (found.outcome == Outcome::overlap || doubtful) {
+        if (!is_deep && are_settled_as(observer, difference, max_distance, cache, result)) return result;
         if (!is_deep) deep = expand_as(observer, difference, cold, s);
         result = result_overlapping(difference, deep, found.iterations);
         if (deep.depth < -certified_distance * difference.size) {
@@ -191,7 +187,20 @@ LENDULET_FORCE_INLINE ConvexDistance distance_of(const ConvexPair& pair, GjkCach
         result = result_apart(difference, s, found);
     }
     remember(s, result.normal, cache);
+    if (are_both(difference, GeometryKind::box) && result.distance <= near * difference.size)
+        cache.face = GjkCache::unknown_face;
     return result;
+}
+
+// Boxes that are near each other or overlap mostly need no search.
+LENDULET_FORCE_INLINE bool are_near_boxes(const CoreDifference& difference, float max_distance, GjkCache& cache,
+                                          ConvexDistance& result) {
+    const bool cold = cache.count == 0;
+    if (!are_both(difference, GeometryKind::box) || !(cold || cache.face != 0)) return false;
+    const BoxDifference boxes(difference);
+    const double limit = max_distance > 0.0f ? max_distance : 0.0;
+    if (cold && boxes.are_farther(minimum(near * boxes.size, limit))) return false;
+    return closest_of_boxes(boxes, max_distance, cache, result);
 }
 
 #ifdef LENDULET_CERTIFICATES
@@ -220,16 +229,19 @@ void check_certificate(const CoreDifference& difference, const ConvexDistance& r
 
 ConvexDistance distance(const ConvexPair& pair, GjkCache& cache, SimplexSolver method, float max_distance) {
     SilentObserver silent;
-    ConvexDistance result = distance_of(pair, cache, method, max_distance, silent);
+    ConvexDistance result;
+    const CoreDifference difference(pair);
+    if (!are_near_boxes(difference, max_distance, cache, result))
+        result = distance_of(difference, cache, method, max_distance, silent);
 #ifdef LENDULET_CERTIFICATES
-    check_certificate(CoreDifference(pair), result, max_distance);
+    check_certificate(difference, result, max_distance);
 #endif
     return result;
 }
 
 ConvexDistance distance(const ConvexPair& pair, GjkCache& cache, SimplexSolver method, float max_distance,
                         Recorder& recorder) {
-    return distance_of(pair, cache, method, max_distance, recorder);
+    return distance_of(CoreDifference(pair), cache, method, max_distance, recorder);
 }
 
 }  // namespace lendulet

@@ -22,6 +22,10 @@ struct ConvexPair {
 // depends on poses and cache alone.
 struct GjkCache {
     uint8_t count = 0;
+    // Of two boxes near each other: 1 + the face of their difference that the answer lay on (box_difference.h), or
+    // unknown_face; 0: they are far apart, or other shapes.
+    uint8_t face = 0;
+    static constexpr uint8_t unknown_face = 16;
     Vec3 direction;   // last separating direction, frame of A
     Vec3 a[4], b[4];  // local points of A and of B
 };

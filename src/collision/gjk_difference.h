@@ -97,13 +97,14 @@ struct CoreDifference {
     DifferencePoint support(Vec3d d) const;
     // The point that local points remembered from an earlier query make now.
     DifferencePoint point(Vec3 pa, Vec3 pb) const {
-        return {translation + rotation * snap_to_core(b, to_double(pb)) - snap_to_core(a, to_double(pa)), pa, pb};
+        return {translation + rotation * exact_point(b, pb) - exact_point(a, pa), pa, pb};
     }
+    Vec3d exact_point(const Geometry& g, Vec3 p) const { return curved ? snap_to_core(g, to_double(p)) : to_double(p); }
     Vec3d centre() const { return translation + rotation * core_centre(b) - core_centre(a); }
     // The point on A, frame of A, that belongs to the given part of a simplex.
     Vec3d witness_on_a(const Simplex& s, const uint8_t* index, const double* weight, int count) const {
         Vec3d p{};
-        for (int i = 0; i < count; ++i) p += weight[i] * snap_to_core(a, to_double(s.a[index[i]]));
+        for (int i = 0; i < count; ++i) p += weight[i] * exact_point(a, s.a[index[i]]);
         return p;
     }
 };

@@ -120,6 +120,28 @@ TEST(Snapshot, HoldsGravityForcesMotorsAndOverlaps) {
     EXPECT_EQ(world.hash(), expected);
 }
 
+// Boxes with round edges, whose queries remember a face. Bytes tell of caches that the motion does not show yet.
+TEST(Snapshot, HoldsWhereDistanceQueriesBegin) {
+    World world = WorldBuilder{}.build().value();
+    add_floor(world);
+    for (int i = 0; i < 27; ++i) {
+        const float x = static_cast<float>(i % 3), y = static_cast<float>(i / 9), z = static_cast<float>(i / 3 % 3);
+        world
+            .add_rigid_body({.shape = Box{{0.3f, 0.3f, 0.3f}, 0.05f},
+                             .position = {0.9f * x + 0.1f * y, 1.0f + 0.9f * y, 0.9f * z},
+                             .orientation = rotation_about({0.6f, 0.0f, 0.8f}, 0.5f * (x + z))})
+            .value();
+    }
+    run(world, 40);
+    const std::vector<uint8_t> saved = world.snapshot();
+    run(world, 5);
+    const std::vector<uint8_t> expected = world.snapshot();
+    run(world, 20);
+    world.restore(saved).value();
+    run(world, 5);
+    EXPECT_EQ(world.snapshot(), expected);
+}
+
 TEST(Snapshot, RemovesWhatWasAddedSinceAndNewBodiesGetTheSamePlaces) {
     World world = WorldBuilder{}.build().value();
     BodyId floor = add_floor(world);

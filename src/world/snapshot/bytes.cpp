@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr char magic[8] = {'L', 'E', 'N', 'D', 'S', 'N', 'A', 'P'};
-constexpr uint32_t version = 4;
+constexpr uint32_t version = 5;
 constexpr size_t header_bytes = sizeof magic + 2 * sizeof(uint32_t), checksum_bytes = sizeof(uint64_t);
 
 uint64_t checksum(std::span<const uint8_t> bytes) {
@@ -133,7 +133,7 @@ void pair(Bytes& bytes, SavedPair& p) {
     if (!p.listed) bytes(p.rest_h);
     if (cached) {
         GjkCache& g = p.cache.gjk;
-        bytes(p.cache.feature, p.cache.clearance, g.count);
+        bytes(p.cache.feature, p.cache.clearance, g.count, g.face);
         if (g.count > 0) bytes(g.direction);
         for (int k = 0; k < g.count && k < 4; ++k) bytes(g.a[k], g.b[k]);
     }

@@ -108,6 +108,7 @@ Status check_pairs(const WorldData& world, const SavedState& state) {
         if (!sorted || p.b >= owner.size() || !owner[p.a] || !owner[p.b] ||
             (!p.listed && (owner[p.a]->mover || owner[p.b]->mover || !is_finite(p.rest_h))))
             return bad("holds a pair that cannot be");
+        if (p.cache.gjk.face > GjkCache::unknown_face) return bad("holds a face that boxes do not have");
         if (p.cache.gjk.count > 4 || p.contacts > room_for_contacts(world, p)) return bad("holds too many contacts");
         contacts += p.contacts;
         before = &p;
