@@ -115,10 +115,10 @@ private:
     // its sides, which is asked but once.
     void meet_listed(const float lower[3], const float upper[3]) {
         for (const Obstacle& o : world_.continuous.obstacles) {
-            if (!moved_far(o.carrier)) continue;
+            if (o.carrier.body == asked_ && !far_) continue;
             bool overlap = true;
             for (int d = 0; d < 3; ++d) overlap &= o.box.lower[d] <= upper[d] && lower[d] <= o.box.upper[d];
-            if (overlap) meet_collider(o.collider, o.carrier.path);
+            if (overlap && moved_far(o.carrier)) meet_collider(o.collider, o.carrier.path);
         }
     }
     // Those that the broad phase finds: obstacles or others, rising.
