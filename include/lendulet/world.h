@@ -106,6 +106,7 @@ struct StepStatistics {
     double total_ms;
     int bodies, awake_bodies, pairs, manifolds, contact_points, colours, overflow_manifolds, joints;
     int hard_bodies;        // awake bodies of islands that took more substeps than are set (docs/solver.md)
+    int flowing_bodies;     // ... and of large islands in motion, which took half of them
     float max_penetration;  // deepest overlap after the step, m
     int capped_bodies;      // bodies whose speed was cut to the limit
     int contained_bodies;   // bodies whose state went non-finite, was put back and stopped

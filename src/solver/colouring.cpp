@@ -134,9 +134,10 @@ void ColourSchedule::measure_rows(const SolverKernels& kernels, const SolverKern
     row_bytes = (bytes + Memory::alignment - 1) / Memory::alignment * Memory::alignment;
 }
 
-void ColourSchedule::place_rows(std::byte* rows, const ContactRecord* records) {
+void ColourSchedule::place_rows(std::byte* rows, const ContactRecord* records, float impulse_unit) {
     for (ContactGroup& g : groups) {
         g.records = records;
+        g.impulse_unit = impulse_unit;
         g.rows = rows + reinterpret_cast<size_t>(g.rows);
         g.rolling = g.extras ? rows + reinterpret_cast<size_t>(g.rolling) : nullptr;
     }

@@ -118,7 +118,7 @@ struct ColourSchedule {
                const SolverBodies& bodies, const ContactCut& cut, const SolverKernels& kernels,
                const SolverKernels& scalar_kernels);
     // Gives the groups their rows, `row_bytes` of memory aligned to Memory::alignment; after build(), once.
-    void place_rows(std::byte* rows, const ContactRecord* records);
+    void place_rows(std::byte* rows, const ContactRecord* records, float impulse_unit);
     // Groups of a tile; of all that lies between tiles where `tile` is their count.
     int first_group(int tile) const { return tile == 0 ? 0 : tile_ends[static_cast<size_t>(tile) - 1]; }
     int last_group(int tile) const {

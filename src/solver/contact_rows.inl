@@ -340,6 +340,7 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     }
     const ManifoldQuads<W, P> m(record);
     const RowPlace<W, P> place(m);
+    const F unit = splat<F>(group.impulse_unit);
     c.n = place.n, c.t1 = place.t1, c.ra = place.ra, c.rb = place.rb;
     c.static_friction = m.head[3];
     c.dynamic_friction = m.friction[7];
@@ -355,7 +356,7 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     for (int j = 0; j < P; ++j) {
         if constexpr (P > 1) c.p[j].u = place.u[j], c.p[j].v = place.v[j];
         c.p[j].separation = place.separation[j];
-        c.p[j].impulse = m.head[4 + j];
+        c.p[j].impulse = unit * m.head[4 + j];
     }
     c.shift = zero;
     c.overdue = zero_vector<F>();
@@ -372,10 +373,10 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     }
     prepare_normals<W, P>(c, c.ra, c.rb, IA, IB, inverse_masses);
     prepare_friction<W, P>(c, c.ra, c.rb, IA, IB, inverse_masses);
-    Vec3T<F> f{m.friction[0], m.friction[1], m.friction[2]};
+    const Vec3T<F> f = unit * Vec3T<F>{m.friction[0], m.friction[1], m.friction[2]};
     c.friction.tangent[0] = dot(f, c.t1);
     c.friction.tangent[1] = dot(f, cross(c.n, c.t1));
-    if constexpr (P > 1) c.friction.twist = m.friction[3];
+    if constexpr (P > 1) c.friction.twist = unit * m.friction[3];
     for (int l = live; l < W; ++l) {  // empty lanes never push
         for (int j = 0; j < P; ++j) set_lane(c.p[j].impulse, l, 0.0f), set_lane(c.p[j].mass, l, 0.0f);
         set_lane(c.friction.tangent[0], l, 0.0f), set_lane(c.friction.tangent[1], l, 0.0f);
@@ -396,22 +397,22 @@ template <int W, int P>
 void store_rows(const ContactGroup& g, ContactRecord* records, int begin, int end) {
     using F = Wide<float, W>;
     constexpr int stride = sizeof(ContactRecord) / sizeof(float);
-    const F zero = splat<F>(0.0f);
+    const F zero = splat<F>(0.0f), unit = splat<F>(1.0f / g.impulse_unit);
     auto* rows = reinterpret_cast<const ContactRow<W, P>*>(g.rows);
     for (int i = begin; i < end; ++i) {
         const ContactRow<W, P>& c = rows[i];
-        Vec3T<F> f = c.friction.tangent[0] * c.t1 + c.friction.tangent[1] * cross(c.n, c.t1);
+        Vec3T<F> f = unit * (c.friction.tangent[0] * c.t1 + c.friction.tangent[1] * cross(c.n, c.t1));
         // Of rows that were passed over zeros have another sign.
         F impulses[8] = {zero, zero, zero, zero, f.x + zero, f.y + zero, f.z + zero, zero};
         float separation[P][W];
         for (int j = 0; j < P; ++j) {
-            impulses[j] = c.p[j].impulse;
+            impulses[j] = unit * c.p[j].impulse;
             F s = c.shift;
             if constexpr (P > 1) s = s + (c.p[j].u * c.turn.shift[0] + c.p[j].v * c.turn.shift[1]);
             s = select(c.p[j].separation < splat<F>(0.1f * far_separation), c.p[j].separation + s, c.p[j].separation);
             store_wide(separation[j], s);
         }
-        if constexpr (P > 1) impulses[7] = c.friction.twist + zero;
+        if constexpr (P > 1) impulses[7] = unit * c.friction.twist + zero;
         int live = g.count - i * W < W ? g.count - i * W : W;
         int32_t index[W];
         for (int l = 0; l < W; ++l) index[l] = static_cast<int32_t>(g.order[i * W + (l < live ? l : 0)]);

@@ -38,6 +38,7 @@ struct ContactGroup {
     const uint32_t* order;         // indices of the records ...
     const ContactRecord* records;  // ... in here
     std::byte* rows;
+    float impulse_unit;    // a record's impulses are multiplied by it on their way into rows: a power of two
     std::byte* rolling;    // rows against rolling, or null
     ContactExtra* extras;  // by record, where `rolling` is not null
 };

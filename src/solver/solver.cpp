@@ -122,8 +122,9 @@ size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const 
     return schedule_.row_bytes;
 }
 
-void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, std::byte* rows) {
-    schedule_.place_rows(rows, records);
+void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, std::byte* rows,
+                     float impulse_unit) {
+    schedule_.place_rows(rows, records, impulse_unit);
     const TaskPool::Alone alone(tasks, is_small(bodies.count));
     for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
         kernels.prepare(g, records, bodies, begin, end);

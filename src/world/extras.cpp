@@ -33,9 +33,9 @@ void pack_extra(WorldData& world, uint32_t record, float h) {
 void pack_extras(WorldData& world, float dt) {
     if (!world.has_extras) return;
     world.extras.resize(world.records.size(), ContactExtra{});
-    for (int c = 0; c < substep_classes; ++c) {
+    for (int c = 0; c < solver_parts; ++c) {
         const SolverPart& part = world.parts[c];
-        const float h = dt / static_cast<float>(world.config.solver_steps << c);
+        const float h = dt / (substep_multiple(c) * static_cast<float>(world.config.solver_steps));
         const uint32_t* list = world.active.data() + part.first_contact;
         ContactEnds* ends = world.active_ends.data() + part.first_contact;
         world.tasks.for_each(part.contact_count, 256, [&](int begin, int end, int) {

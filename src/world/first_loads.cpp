@@ -108,8 +108,8 @@ void settle_first_loads(WorldData& world, float dt) {
         size_t first = end;
         while (first > 0 && list[first - 1].upper == upper) --first;
         // Impulses are those of the setting's substep, and gaps go with the square of the island's.
-        const auto shorter = static_cast<float>(1 << 2 * substep_class(world, upper, dt));
-        const float settled = settled_by(world, first, end, contact_leak / contact_bias * h / shorter);
+        const auto shorter = substep_multiple(part_for(world, upper, dt));
+        const float settled = settled_by(world, first, end, contact_leak / contact_bias * h / (shorter * shorter));
         world.island_loads[upper].settled = settled;
         Position& x = world.bodies.pose[upper].position;
         Vec3& low = world.bodies.momenta[upper].x_low;

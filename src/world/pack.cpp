@@ -15,13 +15,13 @@ namespace {
 
 constexpr int bodies_per_task = 256, contacts_per_task = 512;
 
-// How many substeps of its own a body takes in one of the setting: 1, 2, 4, 8, or less than one. What is kept from step
-// to step, impulses and changes, is in units of the setting's substep.
+// How many substeps of its own a body takes in one of the setting. What is kept from step to step, impulses and changes,
+// is in units of the setting's substep.
 float multiple(const WorldData& world, int32_t solver_body) {
     if (solver_body >= world.alone.begin) return 1.0f / static_cast<float>(world.config.solver_steps);
     int c = 0;
     while (solver_body >= world.parts[c].bodies.end) ++c;
-    return static_cast<float>(1 << c);
+    return substep_multiple(c);
 }
 
 // As BodyMotion::free.
@@ -69,21 +69,6 @@ void set_lane(PackBatch& batch, int i, const WorldData& world, uint32_t slot, Ve
     put(batch.torque, i, angular.mean * push.torque);
 }
 
-// Impulses of contacts with more substeps from units of the setting's substep to those of their own, or back: powers of
-// two, so nothing is rounded.
-void scale_impulses(WorldData& world, int sign) {
-    for (int c = 1; c < substep_classes; ++c) {
-        float factor = sign > 0 ? static_cast<float>(1 << c) : 1.0f / static_cast<float>(1 << c);
-        const SolverPart& part = world.parts[c];
-        for (int i = 0; i < part.contact_count; ++i) {
-            ContactRecord& r = world.records[world.active[static_cast<size_t>(part.first_contact + i)]];
-            for (float& x : r.normal_impulse) x *= factor;
-            for (float& x : r.friction_impulse) x *= factor;
-            r.twist_impulse *= factor;
-        }
-    }
-}
-
 // What a body alone does under the chosen reference integrator.
 void fly(WorldData& world, uint32_t slot, float dt) {
     BodyStore& bodies = world.bodies;
@@ -112,15 +97,16 @@ void tie_kinematic(WorldData& world) {
 
 // The active contacts by class, and in each those that pass last; stably. Most often there is but one class.
 void sort_by_class(WorldData& world) {
-    int counts[2 * substep_classes] = {}, first = 0;
+    int counts[2 * solver_parts] = {}, first = 0;
     auto class_of = [&](const ContactEnds& e) {
         int c = 0;
         while (e.b >= world.parts[c].bodies.end) ++c;
         return c;
     };
-    auto list_of = [&](const ContactEnds& e) { return 2 * (world.hard_bodies == 0 ? 0 : class_of(e)) + e.passes; };
+    const bool sorts = world.hard_bodies + world.flowing_bodies > 0;
+    auto list_of = [&](const ContactEnds& e) { return 2 * (sorts ? class_of(e) : 0) + e.passes; };
     for (const ContactEnds& e : world.active_ends) ++counts[list_of(e)];
-    for (int c = 0; c < substep_classes; ++c) {
+    for (int c = 0; c < solver_parts; ++c) {
         SolverPart& part = world.parts[c];
         part.first_contact = first;
         part.row_count = counts[2 * c];
@@ -128,7 +114,8 @@ void sort_by_class(WorldData& world) {
         counts[2 * c] = first, counts[2 * c + 1] = first + part.row_count;
         first += part.contact_count;
     }
-    if (world.parts[0].row_count == first) return;
+    for (const SolverPart& part : world.parts)
+        if (part.row_count == first) return;
     world.unsorted.swap(world.active);
     world.unsorted_ends.swap(world.active_ends);
     world.active.resize_unset(world.unsorted.size());
@@ -213,10 +200,7 @@ void pack_contacts(WorldData& world) {
             r.body_b = ends[i].b;
         }
     });
-    scale_impulses(world, -1);
 }
-
-void unpack_contacts(WorldData& world) { scale_impulses(world, 1); }
 
 namespace {
 

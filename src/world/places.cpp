@@ -5,7 +5,7 @@
 namespace lendulet {
 
 void place_bodies(WorldData& world, float dt) {
-    constexpr int classes = substep_classes + 1;
+    constexpr int classes = solver_parts + 1;
     BodyStore& bodies = world.bodies;
     // Each class begins a tile of its own.
     int counts[classes] = {};
@@ -18,11 +18,11 @@ void place_bodies(WorldData& world, float dt) {
                                 ? !info.asleep
                                 : info.type == BodyType::kinematic && length_squared(m.p) + length_squared(m.L) > 0.0f;
         world.has_packed_kinematic |= packed && !dynamic;
-        info.solver_index = packed ? -1 - substep_class(world, slot, dt) : static_body;
+        info.solver_index = packed ? -1 - part_for(world, slot, dt) : static_body;
         if (packed) ++counts[-1 - info.solver_index];
     }
     int firsts[classes], place = reserved_bodies, awake = 0;
-    auto range_of = [&](int c) -> BodyRange& { return c == alone_class ? world.alone : world.parts[c].bodies; };
+    auto range_of = [&](int c) -> BodyRange& { return c == alone_part ? world.alone : world.parts[c].bodies; };
     for (int c = 0; c < classes; ++c) {
         const TilePlaces places(place, counts[c]);
         range_of(c) = {place, places.end()};
@@ -30,7 +30,8 @@ void place_bodies(WorldData& world, float dt) {
         firsts[c] = awake;
         awake += counts[c];
     }
-    world.hard_bodies = awake - counts[0] - counts[alone_class];
+    world.hard_bodies = awake - counts[0] - counts[flow_part] - counts[alone_part];
+    world.flowing_bodies = counts[flow_part];
     world.solver_bodies.reset(place - reserved_bodies);
     world.awake.resize_unset(static_cast<size_t>(awake));
     for (uint32_t slot : world.movers.bodies) {

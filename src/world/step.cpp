@@ -36,8 +36,8 @@ private:
 void prepare_solvers(WorldData& world, float dt) {
     JointReuse reuse = pack_joints(world, dt / static_cast<float>(world.config.solver_steps));
     const ContactRecord* records = world.records.data();
-    size_t bytes = 0, first[substep_classes];
-    for (int c = substep_classes - 1; c >= 0; --c) {
+    size_t bytes = 0, first[solver_parts];
+    for (int c = solver_parts - 1; c >= 0; --c) {
         const SolverPart& part = world.parts[c];
         first[c] = bytes;
         bytes += world.solvers[c].schedule(
@@ -45,15 +45,16 @@ void prepare_solvers(WorldData& world, float dt) {
             world.active.data() + part.first_contact, {part.contact_count, part.row_count}, part.cut,
             world.has_extras ? world.extras.data() : nullptr);
         // Islands go up by any number of classes and come down one by one, also long after all has come to rest.
-        if (c > 0 && part.contact_count > 0) world.solvers[c - 1].make_room(world.solvers[c]);
+        if (c > 0 && part.contact_count > 0) world.solvers[c == flow_part ? 0 : c - 1].make_room(world.solvers[c]);
     }
     Array<std::byte>& rows = world.schedule_room.rows;
     rows.clear();
     rows.resize_unset(bytes);
-    for (int c = 0; c < substep_classes; ++c) {
+    for (int c = 0; c < solver_parts; ++c) {
         const SolverPart& part = world.parts[c];
         ContactList contacts{records, world.active.data() + part.first_contact, part.contact_count, dt};
-        world.solvers[c].prepare(world.tasks, world.solver_bodies, records, rows.data() + first[c]);
+        world.solvers[c].prepare(world.tasks, world.solver_bodies, records, rows.data() + first[c],
+                                 1.0f / substep_multiple(c));
         JointList joints{world.joint_records.data() + part.first_joint, part.joint_count, world.joint_axes.data()};
         world.solvers[c].prepare_joints(world.tasks, world.solver_bodies, joints, contacts, reuse);
     }
@@ -95,9 +96,9 @@ void step(WorldData& world, float dt, bool last) {
     pack_extras(world, dt);
     prepare_solvers(world, dt);
     clock.lap(Stage::prepare);
-    for (int c = 0; c < substep_classes; ++c) {
+    for (int c = 0; c < solver_parts; ++c) {
         SolverSettings s = settings;
-        s.substeps <<= c;
+        s.substeps = static_cast<int>(substep_multiple(c) * static_cast<float>(settings.substeps));
         world.solvers[c].solve(world.tasks, s, world.solver_bodies, world.records.data(), world.parts[c].bodies);
     }
     world.solvers[0].coast(world.tasks, settings, world.solver_bodies, world.alone);
@@ -106,7 +107,6 @@ void step(WorldData& world, float dt, bool last) {
         solver.store(world.tasks, world.solver_bodies, world.records.data());
         solver.store_joints(world.tasks);
     }
-    unpack_contacts(world);
     unpack_bodies(world, dt, last);
     stop_at_impacts(world, dt);
     finish_step(world, dt);
@@ -132,6 +132,7 @@ void finish_step(WorldData& world, float dt) {
     }
     s.joints = world.joints.count();
     s.hard_bodies = world.hard_bodies;
+    s.flowing_bodies = world.flowing_bodies;
     s.bytes_per_body = BodyStore::bytes_per_body() + sizeof(BodyState) + sizeof(BodyInertia) + sizeof(BodyStart) +
                        sizeof(BodyMotion) + sizeof(BodyPlace) + sizeof(BodyBlock) / block_bodies;
     s.bytes_per_manifold = sizeof(ContactRecord) + sizeof(FoundSeparations) + sizeof(ColliderPair) +

@@ -116,6 +116,7 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
               {&memory, settings.width},
               {&memory, settings.width},
               {&memory, settings.width},
+              {&memory, settings.width},
               {&memory, settings.width}},
       island_parent(&memory),
       island_still(&memory),

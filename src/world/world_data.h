@@ -40,36 +40,45 @@ struct NarrowScratch {
     float max_penetration;
 };
 
-// Islands take 1, 2, 4, 8 or 16 times the substeps of the setting.
-inline constexpr int substep_classes = 5;
+// Islands take 1, 2, 4, 8 or 16 times the substeps of the setting, each class being a part of the solver's arrays; those
+// that flow, see substeps.cpp, take half of them and are a part of their own.
+inline constexpr int substep_classes = 5, flow_part = substep_classes, solver_parts = substep_classes + 1;
+// How many substeps of its own a part takes in one of the setting.
+inline float substep_multiple(int part) { return part == flow_part ? 0.5f : static_cast<float>(1 << part); }
 
 // What a body's island carries, see substeps.cpp; sums are with the root of WorldData::load_parent.
 struct alignas(64) IslandLoad {
+    // Of the body itself, which is what most contacts read.
     uint64_t step = 0;  // one more than the steps before the one that this entry is of
-    int contacts = 0;
-    float sinking = 0.0f, buckling = 0.0f;  // greatest load ratio of its contacts, per size and per size cubed
-    float felt_sinking = 0.0f, felt_buckling = 0.0f;  // the same of what the last step's impulses tell
-    float lowest = 0.0f, highest = 0.0f;              // positions along gravity, times gravity
-    uint8_t least = 0;                                // class that its joints ask for
-    uint8_t before = 0;                               // class in the step before
-    uint8_t waited = 0;                               // steps since when fewer substeps would do
-    uint8_t pressed = 0;                              // steps since when it feels loads that take more
-    uint8_t substeps = 0;                             // class
-    bool meets_moving = false;                        // has a contact with another dynamic body
-    bool tied = false;   // to other joints or a kinematic body in motion: takes the setting's substeps
-    bool rests = false;  // one of its bodies is slow
-    bool decided = false;
-    // Of the body itself.
-    bool in_group = false;  // in one of WorldData::joint_groups
-    bool held = false;      // rests on a contact that carries already
-    bool slept = false;     // has slept since, and goes on from here when it wakes
+    Vec3 velocity;
+    float inverse_mass = 0.0f, radius = 0.0f;
+    float carried = 0.0f;                 // its mass and that of what new contacts put on it, kg
+    float settled = 0.0f;                 // how far it is put down for that, m
+    float lowest = 0.0f, highest = 0.0f;  // positions along gravity, times gravity; of a root its island's
+    uint8_t before = 0;                   // class in the step before
+    uint8_t waited = 0;                   // steps since when fewer substeps would do
+    uint8_t pressed = 0;                  // steps since when it feels loads that take more
+    uint8_t substeps = 0;                 // class
+    uint8_t calm = 0;           // steps for which it has been slow, at most calm_steps; `slow`: for so many
+    bool meets_moving = false;  // has a contact with another dynamic body
+    bool in_group = false;      // in one of WorldData::joint_groups
+    bool held = false;          // rests on a contact that carries already
+    bool slept = false;         // has slept since, and goes on from here when it wakes
     bool moves = false, slow = false;
     bool touches = false;  // is in contact
-    uint8_t calm = 0;      // steps for which it has been slow, at most calm_steps; `slow`: for so many
-    float carried = 0.0f;  // its mass and that of what new contacts put on it, kg
-    float settled = 0.0f;  // how far it is put down for that, m
-    float inverse_mass = 0.0f, radius = 0.0f;
+    // Of a root's island.
+    alignas(64) int contacts = 0;
+    int stirred = 0;                        // contacts whose bodies move against each other
+    float sinking = 0.0f, buckling = 0.0f;  // greatest load ratio of its contacts, per size and per size cubed
+    float felt_sinking = 0.0f, felt_buckling = 0.0f;  // the same of what the last step's impulses tell
+    uint8_t least = 0;                                // class that its joints ask for
+    bool tied = false;   // to other joints or a kinematic body in motion: takes the setting's substeps
+    bool rests = false;  // one of its bodies is slow
+    bool jointed = false;
+    bool flows = false;  // takes half of the setting's
+    bool decided = false;
 };
+static_assert(sizeof(IslandLoad) == 128);
 
 // The bodies of a contact's A and B, by slot. Where one of them is not moved by constraints, it is A. Beside them what
 // those who go through all contacts one by one want to know of its record: see choose_substeps().
@@ -179,7 +188,7 @@ struct WorldData {
     Array<JointAxesRecord> joint_axes;            // of those of them whose rows are data
     Array<uint32_t> fixed_joints;                 // records with a side on a body that is not packed
     Array<uint32_t> joint_bodies;                 // the awake bodies that the records name, ...
-    int joint_bodies_ends[substep_classes] = {};  // ... and where their classes end among the packed ones
+    int joint_bodies_ends[solver_parts] = {};  // ... and where their classes end among the packed ones
     bool joints_changed = true;                   // a joint came, went or was set
 
     // Groups of jointed bodies that need more substeps, with their bodies one after the other.
@@ -197,14 +206,15 @@ struct WorldData {
     Array<uint32_t> load_parent;     // union-find over body slots
     Array<uint32_t> loaded;          // slots of those of this step: bodies in contact and those of joint groups
     Array<FirstLoad> first_loads;    // of this step
-    SolverPart parts[substep_classes];
+    SolverPart parts[solver_parts];
     BodyRange alone{0, 0};  // bodies behind them that nothing acts on but gravity: they take the step at once
     int hard_bodies = 0;    // of classes above the setting's
+    int flowing_bodies = 0;
     bool has_packed_kinematic = false;  // some packed bodies are moved by hand
     ScheduleRoom schedule_room;
     size_t expected = 0;          // colliders for whose contacts there is room, see expect_contacts()
     bool contacts_given = false;  // World::reserve() was told how many: none are expected
-    Solver solvers[substep_classes];
+    Solver solvers[solver_parts];
     Array<uint32_t> island_parent;  // union-find over body slots
     Array<float> island_still;
     Array<BodyPair> touched_sleepers;  // (who touches, sleeping body)
@@ -257,15 +267,14 @@ void limit_recovery(WorldData& world, float dt);
 void pack_extras(WorldData& world, float dt);
 // Returns what the solver may keep of the last step.
 JointReuse pack_joints(WorldData& world, float h);
-void unpack_contacts(WorldData& world);
 void unpack_bodies(WorldData& world, float dt, bool forces_end);
 void stop_at_impacts(WorldData& world, float dt);
 void finish_step(WorldData& world, float dt);
 
-// Class of the bodies of WorldData::alone.
-inline constexpr int alone_class = substep_classes;
-// 0 .. substep_classes - 1 or alone_class, for a body that is about to be packed; after choose_substeps().
-int substep_class(WorldData& world, uint32_t slot, float dt);
+// The place of WorldData::alone, behind all parts.
+inline constexpr int alone_part = solver_parts;
+// 0 .. solver_parts - 1 or alone_part, for a body that is about to be packed; after choose_substeps().
+int part_for(WorldData& world, uint32_t slot, float dt);
 
 // Mixes all warm-start impulses of joints into a hash, in creation order.
 uint64_t hash_joints(const WorldData& world, uint64_t start);

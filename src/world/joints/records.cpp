@@ -94,7 +94,7 @@ int part_of(const WorldData& world, int32_t solver_body) {
 float substep_share(const WorldData& world, int record) {
     int c = 0;
     while (record >= world.parts[c].first_joint + world.parts[c].joint_count) ++c;
-    return 1.0f / static_cast<float>(1 << c);
+    return 1.0f / substep_multiple(c);
 }
 
 bool awake(const WorldData& world, uint32_t body) {
@@ -191,11 +191,11 @@ void list_joints(WorldData& world) {
         uint32_t moved = awake(world, j.body_a) ? j.body_a : j.body_b;
         return awake(world, moved) ? part_of(world, world.bodies.info[moved].solver_index) : -1;
     };
-    int counts[substep_classes] = {};
+    int counts[solver_parts] = {};
     for (uint32_t slot : world.movers.joints)
         if (int c = class_of_joint(joints.info[slot]); c >= 0) ++counts[c];
     int first = 0;
-    for (int c = 0; c < substep_classes; ++c) {
+    for (int c = 0; c < solver_parts; ++c) {
         world.parts[c].first_joint = first;
         world.parts[c].joint_count = counts[c];
         first += counts[c];
@@ -216,7 +216,7 @@ void list_joints(WorldData& world) {
 }
 
 bool same_bodies(const WorldData& world) {
-    for (int c = 0; c < substep_classes; ++c)
+    for (int c = 0; c < solver_parts; ++c)
         if (world.joint_bodies_ends[c] != world.parts[c].bodies.end) return false;
     return world.joint_bodies.size() == world.awake.size() &&
            std::memcmp(world.joint_bodies.data(), world.awake.data(), world.awake.size() * sizeof(uint32_t)) == 0;
@@ -261,7 +261,7 @@ JointReuse pack_joints(WorldData& world, float h) {
             world.fixed_joints.push_back(i);
     world.joint_bodies.clear();
     world.joint_bodies.append(world.awake.data(), world.awake.size());
-    for (int c = 0; c < substep_classes; ++c) world.joint_bodies_ends[c] = world.parts[c].bodies.end;
+    for (int c = 0; c < solver_parts; ++c) world.joint_bodies_ends[c] = world.parts[c].bodies.end;
     world.joints_changed = false;
     return reuse;
 }
