@@ -11,6 +11,8 @@ constexpr float buckling_reserve = 1.7f;  // above the load at which a column of
 constexpr float kept_reserve = 1.6f;  // a class is left only when fewer substeps would carry this many times the load
 constexpr int patience = 60;          // ... for so many steps: a column that has just stiffened springs up a little
 constexpr int falling_patience = 12;  // ... and for so many where all bodies are fast, or none carries anything
+constexpr int loose_patience = 3;  // ... and for so many where most contacts move
+constexpr int fewest_loose = 32;   // contacts of an island of which that is asked
 // Steps for which a load must be felt before an island takes more substeps for it: what lands on bodies that lie still
 // presses them for a step or two, and so does what rocks. Of 200 bodies that jump about, two thirds took two or four
 // times the substeps with 1, half of them with 2, none with 3.
@@ -18,7 +20,7 @@ constexpr int lasting_load = 3;
 // An island flows from so many contacts on (fewer cost little), by no fewer substeps than these, and while what is slow
 // in it sinks by no more than this part of its size.
 constexpr int fewest_contacts = 256, fewest_substeps = 4;
-constexpr float flowing_sinking = 1e-2f;
+constexpr float flowing_sinking = 3e-2f;
 
 struct Load {
     float sinking, buckling;
@@ -38,10 +40,14 @@ int class_for(const IslandLoad& l, Load load, float gravity, float dt, int subst
     return c;
 }
 
-// Whether half of the substeps do: most of it moves.
+// Whether an island of many bodies moves in most places: nothing stands there.
+bool is_loose(const IslandLoad& l) {
+    return !l.jointed && l.contacts >= fewest_loose && 2 * contacts_per_sample * l.stirred > l.contacts;
+}
+
+// Whether half of the substeps do for what is loose.
 bool can_flow(const IslandLoad& l, float gravity, float dt, int substeps) {
-    if (l.jointed || l.contacts < fewest_contacts || 2 * contacts_per_sample * l.stirred <= l.contacts) return false;
-    if (!(gravity > 0.0f) || substeps % 2 != 0 || substeps < 2 * fewest_substeps) return false;
+    if (l.contacts < fewest_contacts || !(gravity > 0.0f) || substeps % 2 != 0 || substeps < 2 * fewest_substeps) return false;
     const float h = 2.0f * dt / static_cast<float>(substeps);
     return sinking_of(gravity, h) * maximum(l.sinking, l.felt_sinking) < flowing_sinking;
 }
@@ -52,21 +58,22 @@ int larger(int a, int b) { return a > b ? a : b; }
 
 void decide_substeps(IslandLoad& l, float gravity, float dt, int substeps) {
     l.decided = true;
-    l.flows = can_flow(l, gravity, dt, substeps);
+    const bool loose = is_loose(l);
+    l.flows = loose && can_flow(l, gravity, dt, substeps);
     if (l.tied) return;
     int c = l.least;
     if (gravity > 0.0f) {
         int kept = l.before;
         const Load known{l.sinking, l.buckling}, felt{l.felt_sinking, l.felt_buckling};
         const Load all{maximum(known.sinking, felt.sinking), maximum(known.buckling, felt.buckling)};
-        c = larger(c, class_for(l, known, gravity, dt, substeps, 1.0f));
-        const int asked = class_for(l, felt, gravity, dt, substeps, 1.0f);
+        if (!loose) c = larger(c, class_for(l, known, gravity, dt, substeps, 1.0f));
+        const int asked = loose ? 0 : class_for(l, felt, gravity, dt, substeps, 1.0f);
         l.pressed = asked > larger(kept, c) ? static_cast<uint8_t>(l.pressed + 1) : uint8_t{0};
         if (l.pressed >= lasting_load) c = asked, l.pressed = 0;
-        bool bearable = kept > 0 && class_for(l, all, gravity, dt, substeps, kept_reserve) < kept;
+        bool bearable = kept > 0 && (loose || class_for(l, all, gravity, dt, substeps, kept_reserve) < kept);
         l.waited = bearable ? static_cast<uint8_t>(l.waited + 1) : uint8_t{0};
         const bool stands = l.rests && all.sinking > 0.0f;
-        if (l.waited >= (stands ? patience : falling_patience)) --kept, l.waited = 0;
+        if (l.waited >= (loose ? loose_patience : stands ? patience : falling_patience)) --kept, l.waited = 0;
         c = larger(c, kept);
     }
     while (c > 0 && (l.contacts << c) > most_contacts) --c;
