@@ -58,8 +58,8 @@ public:
     // given.
     size_t schedule(ColourSorter& sorter, const SolverBodies& bodies, const ContactEnds* ends, const uint32_t* list,
                     ContactCount count, const ContactCut& cut = {}, ContactExtra* extras = nullptr);
-    // Packs them into rows, memory aligned to Memory::alignment that must stay until store(). `records` as before; their
-    // impulses are multiplied by `impulse_unit`, a power of two, and divided by it in store().
+    // Packs them into rows, memory aligned to Memory::alignment that must stay until store(). `records` as before;
+    // their impulses are multiplied by `impulse_unit`, a power of two, and divided by it in store().
     void prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, std::byte* rows,
                  float impulse_unit = 1.0f);
     // So that contacts of `other` may become this one's without asking for memory; before schedule().

@@ -11,16 +11,16 @@ constexpr float buckling_reserve = 1.7f;  // above the load at which a column of
 constexpr float kept_reserve = 1.6f;  // a class is left only when fewer substeps would carry this many times the load
 constexpr int patience = 60;          // ... for so many steps: a column that has just stiffened springs up a little
 constexpr int falling_patience = 12;  // ... and for so many where all bodies are fast, or none carries anything
-constexpr int loose_patience = 3;  // ... and for so many where most contacts move
-constexpr int fewest_loose = 32;   // contacts of an island of which that is asked
+constexpr int loose_patience = 3;     // ... and for so many where most contacts move
+constexpr int fewest_loose = 32;      // contacts of an island of which that is asked
 // Steps for which a load must be felt before an island takes more substeps for it: what lands on bodies that lie still
 // presses them for a step or two, and so does what rocks. Of 200 bodies that jump about, two thirds took two or four
 // times the substeps with 1, half of them with 2, none with 3.
 constexpr int lasting_load = 3;
 // An island flows from so many contacts on (fewer cost little), by no fewer substeps than these, and while what is slow
-// in it sinks by no more than this part of its size.
+// in it sinks by no more than this part of its size, on average.
 constexpr int fewest_contacts = 256, fewest_substeps = 4;
-constexpr float flowing_sinking = 3e-2f;
+constexpr float flowing_sinking = 4e-3f;
 
 struct Load {
     float sinking, buckling;
@@ -41,15 +41,14 @@ int class_for(const IslandLoad& l, Load load, float gravity, float dt, int subst
 }
 
 // Whether an island of many bodies moves in most places: nothing stands there.
-bool is_loose(const IslandLoad& l) {
-    return !l.jointed && l.contacts >= fewest_loose && 2 * contacts_per_sample * l.stirred > l.contacts;
-}
+bool is_loose(const IslandLoad& l) { return !l.jointed && l.contacts >= fewest_loose && 2 * l.stirred > l.samples; }
 
 // Whether half of the substeps do for what is loose.
 bool can_flow(const IslandLoad& l, float gravity, float dt, int substeps) {
-    if (l.contacts < fewest_contacts || !(gravity > 0.0f) || substeps % 2 != 0 || substeps < 2 * fewest_substeps) return false;
+    if (l.contacts < fewest_contacts || !(gravity > 0.0f) || substeps % 2 != 0 || substeps < 2 * fewest_substeps)
+        return false;
     const float h = 2.0f * dt / static_cast<float>(substeps);
-    return sinking_of(gravity, h) * maximum(l.sinking, l.felt_sinking) < flowing_sinking;
+    return sinking_of(gravity, h) * l.sampled_sinking < flowing_sinking * static_cast<float>(l.samples);
 }
 
 int larger(int a, int b) { return a > b ? a : b; }

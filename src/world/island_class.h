@@ -5,9 +5,9 @@
 
 namespace lendulet {
 
-inline constexpr float first_reserve = 4.0f;  // of loads that are guessed: what is built at rest shall not begin by swinging
-// Of every so many contacts one is asked whether its bodies move against each other; in order of pairs, so it is no
-// choice.
+inline constexpr float first_reserve =
+    4.0f;  // of loads that are guessed: what is built at rest shall not begin by swinging
+// Of every so many contacts, in order of pairs, one is a sample of how its island moves.
 inline constexpr int contacts_per_sample = 4;
 
 // Whether body b moves against another one with that velocity: by more than what would carry it up by a part of its
@@ -17,8 +17,11 @@ inline bool is_stirred(const IslandLoad& b, Vec3 other, float gravity) {
     return length_squared(b.velocity - other) > (2.0f * part) * gravity * b.radius;
 }
 
-// Sets the class of a root, and whether it flows. Its class goes up at once for loads that are known, soon for those that
-// are felt, and down one at a time and with patience. `substeps`: the setting.
+// A cube's edge from its diagonal.
+inline float size_of(float radius) { return 1.15f * radius; }
+
+// Sets the class of a root, and whether it flows. Its class goes up at once for loads that are known, soon for those
+// that are felt, and down one at a time and with patience. `substeps`: the setting.
 void decide_substeps(IslandLoad& root, float gravity, float dt, int substeps);
 
 }  // namespace lendulet

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int bodies_per_task = 256, contacts_per_task = 512;
 
-// How many substeps of its own a body takes in one of the setting. What is kept from step to step, impulses and changes,
-// is in units of the setting's substep.
+// How many substeps of its own a body takes in one of the setting. What is kept from step to step, impulses and
+// changes, is in units of the setting's substep.
 float multiple(const WorldData& world, int32_t solver_body) {
     if (solver_body >= world.alone.begin) return 1.0f / static_cast<float>(world.config.solver_steps);
     int c = 0;

@@ -1,7 +1,7 @@
 // Which islands take more substeps than the world's setting, and which fewer. A contact that carries R times the weight
 // of its lighter body sinks by 2 (leak / bias) R g h^2, and a column of size w and height H under it buckles for R (H /
-// w)^2 g h^2 of about w (docs/solver.md); both shrink with the square of the substep. Small islands that need it therefore
-// take 2, 4, 8 or 16 times as many substeps, and so do small groups of jointed bodies with loads or loops
+// w)^2 g h^2 of about w (docs/solver.md); both shrink with the square of the substep. Small islands that need it
+// therefore take 2, 4, 8 or 16 times as many substeps, and so do small groups of jointed bodies with loads or loops
 // (joint_groups.cpp); large ones, where that would cost, those with other joints and those on bodies that are moved by
 // hand keep to the setting. Large ones most of whose bodies move against each other flow: nothing in them stands that
 // could sink or buckle, and half of the substeps do.
@@ -44,7 +44,8 @@ uint32_t root(uint32_t* parent, uint32_t i) {
     return i;
 }
 
-// The entries of a step while it asks what its contacts carry, one by one; with what nothing in the loop changes at hand.
+// The entries of a step while it asks what its contacts carry, one by one; with what nothing in the loop changes at
+// hand.
 struct LoadSurvey {
     WorldData& world;
     const BodyStore& bodies = world.bodies;
@@ -55,13 +56,13 @@ struct LoadSurvey {
     const float gravity = length(down);
     const float weight;  // what a substep of gravity gives to 1 kg, N s
 
-    LoadSurvey(WorldData& w, float dt)
-        : world(w), weight(gravity * dt / static_cast<float>(w.config.solver_steps)) {}
+    LoadSurvey(WorldData& w, float dt) : world(w), weight(gravity * dt / static_cast<float>(w.config.solver_steps)) {}
 
     IslandLoad& island_of(uint32_t slot) const { return loads[root(parent, slot)]; }
     void begin(uint32_t slot);
     bool takes_part(uint32_t slot);
     uint32_t join(uint32_t a, uint32_t b);
+    void sample(IslandLoad& island, const TouchingBodies& ends, bool both, Vec3 velocity_a) const;
     void count(IslandLoad& island, float impulse, const TouchingBodies& ends, bool both, bool guessed);
     void add(uint32_t record, const TouchingBodies& ends, bool sampled);
 };
@@ -114,7 +115,9 @@ uint32_t LoadSurvey::join(uint32_t a, uint32_t b) {
     parent[b] = a;
     IslandLoad &x = loads[a], &y = loads[b];
     x.contacts += y.contacts;
+    x.samples += y.samples;
     x.stirred += y.stirred;
+    x.sampled_sinking += y.sampled_sinking;
     x.sinking = maximum(x.sinking, y.sinking);
     x.buckling = maximum(x.buckling, y.buckling);
     x.felt_sinking = maximum(x.felt_sinking, y.felt_sinking);
@@ -144,11 +147,26 @@ LENDULET_FORCE_INLINE void LoadSurvey::count(IslandLoad& island, float impulse, 
     if (both || !ends.a_above) (ends.a_above ? a : b).held = true;
     if (!(impulse * lightest > weight) || !b.slow || (both && !a.slow)) return;
     float ratio = (guessed ? first_reserve : 1.0f) * impulse * lightest / weight;
-    float size = 1.15f * radius;  // a cube's edge from its diagonal
+    float size = size_of(radius);
     float &sinking = guessed ? island.sinking : island.felt_sinking,
           &buckling = guessed ? island.buckling : island.felt_buckling;
     sinking = maximum(sinking, ratio / size);
     buckling = maximum(buckling, ratio / (size * size * size));
+}
+
+// Takes a contact as a sample; its A moves with that velocity.
+void LoadSurvey::sample(IslandLoad& island, const TouchingBodies& ends, bool both, Vec3 velocity_a) const {
+    const IslandLoad &a = loads[ends.a], &b = loads[ends.b];
+    ++island.samples;
+    island.stirred += !ends.bounces && is_stirred(b, velocity_a, gravity);
+    float lightest = b.inverse_mass, radius = b.radius;
+    if (both) {
+        lightest = maximum(lightest, a.inverse_mass);
+        radius = minimum(radius, a.radius);
+    }
+    const bool slow = b.slow && (!both || a.slow);
+    const float carried = slow ? maximum(ends.impulse * lightest, weight) : weight;
+    island.sampled_sinking += carried / (weight * size_of(radius));
 }
 
 // Takes a contact whose B takes part.
@@ -162,8 +180,7 @@ LENDULET_FORCE_INLINE void LoadSurvey::add(uint32_t record, const TouchingBodies
     IslandLoad& island = loads[both || carried ? join(a, b) : root(parent, b)];
     ++island.contacts;
     island.tied |= carried;
-    if (sampled && !ends.bounces)
-        island.stirred += is_stirred(loads[b], both || carried ? loads[a].velocity : Vec3{}, gravity);
+    if (sampled) sample(island, ends, both, both || carried ? loads[a].velocity : Vec3{});
     if (ends.impulse > 0.0f) count(island, ends.impulse, ends, both, false);
     else if (!loads[b].moves && !moves(world, a)) offer_first_load(world, record, ends, both);
 }
@@ -278,8 +295,8 @@ void choose_substeps(WorldData& world, float dt) {
     if (!world.first_loads.empty()) {
         guess_first_loads(world, survey.weight);
         for (const FirstLoad& f : world.first_loads)
-            survey.count(survey.island_of(f.bodies.b), impulse_of(world.records[f.record]), f.bodies, f.lower != no_slot,
-                         true);
+            survey.count(survey.island_of(f.bodies.b), impulse_of(world.records[f.record]), f.bodies,
+                         f.lower != no_slot, true);
     }
     add_joint_groups(survey, dt);
     tie_other_joints(survey);

@@ -40,8 +40,8 @@ struct NarrowScratch {
     float max_penetration;
 };
 
-// Islands take 1, 2, 4, 8 or 16 times the substeps of the setting, each class being a part of the solver's arrays; those
-// that flow, see substeps.cpp, take half of them and are a part of their own.
+// Islands take 1, 2, 4, 8 or 16 times the substeps of the setting, each class being a part of the solver's arrays;
+// those that flow, see substeps.cpp, take half of them and are a part of their own.
 inline constexpr int substep_classes = 5, flow_part = substep_classes, solver_parts = substep_classes + 1;
 // How many substeps of its own a part takes in one of the setting.
 inline float substep_multiple(int part) { return part == flow_part ? 0.5f : static_cast<float>(1 << part); }
@@ -59,16 +59,17 @@ struct alignas(64) IslandLoad {
     uint8_t waited = 0;                   // steps since when fewer substeps would do
     uint8_t pressed = 0;                  // steps since when it feels loads that take more
     uint8_t substeps = 0;                 // class
-    uint8_t calm = 0;           // steps for which it has been slow, at most calm_steps; `slow`: for so many
-    bool meets_moving = false;  // has a contact with another dynamic body
-    bool in_group = false;      // in one of WorldData::joint_groups
-    bool held = false;          // rests on a contact that carries already
-    bool slept = false;         // has slept since, and goes on from here when it wakes
+    uint8_t calm = 0;                     // steps for which it has been slow, at most calm_steps; `slow`: for so many
+    bool meets_moving = false;            // has a contact with another dynamic body
+    bool in_group = false;                // in one of WorldData::joint_groups
+    bool held = false;                    // rests on a contact that carries already
+    bool slept = false;                   // has slept since, and goes on from here when it wakes
     bool moves = false, slow = false;
     bool touches = false;  // is in contact
     // Of a root's island.
     alignas(64) int contacts = 0;
-    int stirred = 0;                        // contacts whose bodies move against each other
+    int samples = 0, stirred = 0;           // contacts looked at, and those whose bodies move against each other
+    float sampled_sinking = 0.0f;           // sum over samples of load ratio per size, each at least one weight
     float sinking = 0.0f, buckling = 0.0f;  // greatest load ratio of its contacts, per size and per size cubed
     float felt_sinking = 0.0f, felt_buckling = 0.0f;  // the same of what the last step's impulses tell
     uint8_t least = 0;                                // class that its joints ask for
@@ -185,11 +186,11 @@ struct WorldData {
     // Joints that are solved, kept while they and the awake bodies stay the same.
     Array<uint32_t> active_joints;  // slots, by class of substeps and then in creation order
     Array<JointRecord> joint_records;
-    Array<JointAxesRecord> joint_axes;            // of those of them whose rows are data
-    Array<uint32_t> fixed_joints;                 // records with a side on a body that is not packed
-    Array<uint32_t> joint_bodies;                 // the awake bodies that the records name, ...
+    Array<JointAxesRecord> joint_axes;         // of those of them whose rows are data
+    Array<uint32_t> fixed_joints;              // records with a side on a body that is not packed
+    Array<uint32_t> joint_bodies;              // the awake bodies that the records name, ...
     int joint_bodies_ends[solver_parts] = {};  // ... and where their classes end among the packed ones
-    bool joints_changed = true;                   // a joint came, went or was set
+    bool joints_changed = true;                // a joint came, went or was set
 
     // Groups of jointed bodies that need more substeps, with their bodies one after the other.
     Array<JointGroupLoad> joint_groups;

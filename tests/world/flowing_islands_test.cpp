@@ -56,7 +56,7 @@ TEST(FlowingIslands, HeapsFlowUntilTheyLie) {
     float deepest = 0.0f;
     double before = energy(world);
     const double start = before;
-    for (int i = 0; i < 180; ++i) {
+    for (int i = 0; i < 240; ++i) {
         run(world, 1);
         const StepStatistics& s = world.statistics();
         if (s.flowing_bodies > 0) {
@@ -65,14 +65,60 @@ TEST(FlowingIslands, HeapsFlowUntilTheyLie) {
             deepest = std::max(deepest, s.max_penetration);
         }
         const double now = energy(world);
-        EXPECT_LT(now, before + 1e-4 * start) << i;
+        EXPECT_LT(now, before + 4e-4 * start) << i;
         before = now;
     }
     EXPECT_GT(flowing, 15);
-    EXPECT_LT(deepest, 0.05f);
+    EXPECT_LT(deepest, 0.08f);
     EXPECT_EQ(flowing_steps(world, 60), 0);
-    EXPECT_LT(world.statistics().max_penetration, 2e-3f);
+    EXPECT_LT(world.statistics().max_penetration, 4e-3f);
     EXPECT_EQ(world.check(), "");
+}
+
+// A block of cubes that touch and shear each other, after some steps that all of it flows in.
+struct Sheared {
+    std::vector<Pose> poses;
+    float impulse = 0.0f;  // of all contacts, N s
+};
+Sheared sheared(int substeps, bool flows) {
+    World world = WorldBuilder{}.solver_steps(substeps).sleep(false).friction(0.05f).build().value();
+    add_floor(world);
+    for (int i = 0; i < 256; ++i) {
+        const auto x = static_cast<float>(i % 8), y = static_cast<float>(i / 64), z = static_cast<float>(i / 8 % 8);
+        const Vec3 velocity{i % 2 ? 2.0f : -2.0f, 0.0f, i % 3 ? 1.8f : -1.9f};
+        world.add_rigid_body({.shape = Box{}, .position = {x, 0.5f + y, z}, .velocity = velocity}).value();
+    }
+    for (int i = 0; i < 2; ++i) {
+        run(world, 1);
+        EXPECT_EQ(world.statistics().flowing_bodies, flows ? 256 : 0) << i;
+    }
+    Sheared out;
+    for (int i = 0; i < world.body_count(); ++i) {
+        const StaticBodyRef body = world.get_static(world.body(i));
+        out.poses.push_back({body.position(), body.orientation()});
+    }
+    for (int i = 0; i < world.contact_count(); ++i) {
+        const Contact contact = world.contact(i);
+        for (int j = 0; j < contact.point_count; ++j) out.impulse += contact.points[j].normal_impulse;
+    }
+    return out;
+}
+
+// What flows goes, to the bit, as it would if half of the substeps were set. Impulses are told for those that are set.
+TEST(FlowingIslands, TakeHalfOfTheSubsteps) {
+    const Sheared half = sheared(8, true), set = sheared(4, false), all = sheared(6, false);
+    int other = 0;
+    for (size_t i = 0; i < half.poses.size(); ++i) {
+        const Vec3 x = from_origin(half.poses[i].position), y = from_origin(set.poses[i].position);
+        EXPECT_EQ(length_squared(x - y), 0.0f) << i;
+        const Quat turn = half.poses[i].orientation, expected = set.poses[i].orientation;
+        EXPECT_EQ(turn.x, expected.x) << i;
+        EXPECT_EQ(turn.w, expected.w) << i;
+        other += length_squared(x - from_origin(all.poses[i].position)) > 0.0f;
+    }
+    EXPECT_GT(other, 200);
+    EXPECT_GT(half.impulse, 0.0f);
+    EXPECT_EQ(half.impulse, 0.5f * set.impulse);
 }
 
 // Motion is that of bodies against each other: what is carried along stands.
@@ -142,10 +188,8 @@ TEST(FlowingIslands, JointedOnesDoNot) {
         const BodyId id = world.body(i);
         if (world.get_static(id).type() != BodyType::dynamic || i % 2 == 0) continue;
         const Position at = world.get(id).position();
-        const BodyId bob = world
-                               .add_rigid_body({.shape = Sphere{0.1f},
-                                                .position = {at.x, at.y + 0.65f, at.z}})
-                               .value();
+        const BodyId bob =
+            world.add_rigid_body({.shape = Sphere{0.1f}, .position = {at.x, at.y + 0.65f, at.z}}).value();
         world.add_joint(world.joint_at(JointType::ball, id, bob, {at.x, at.y + 0.5f, at.z}).value()).value();
     }
     EXPECT_EQ(flowing_steps(world, 150), 0);
@@ -167,7 +211,8 @@ TEST(FlowingIslands, FewOrOddSubstepsStay) {
     EXPECT_LT(flowing, 5);
 }
 
-// A tall pack of smooth plates takes more substeps while it stands, and soon no more than are set when it is thrown about.
+// A tall pack of smooth plates takes more substeps while it stands, and soon no more than are set when it is thrown
+// about.
 TEST(FlowingIslands, WhatIsThrownAboutIsNotHard) {
     World world = WorldBuilder{}.sleep(false).friction(0.0f).build().value();
     add_floor(world, 200.0f);
