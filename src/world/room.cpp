@@ -91,7 +91,7 @@ Status World::reserve(const Capacity& capacity) {
     const size_t entries = world.solver_bodies.state.capacity();
     world.schedule_room.make_ready(entries, contacts, world.solvers[0].largest_row());
     world.solvers[0].make_ready(entries, contacts, joints);
-    world.solvers[flow_part].make_ready(entries, contacts, 0);
+    world.solvers[flow_part].make_ready(0, contacts, 0);
     // Small islands under load take more substeps: room for one of them.
     for (int c = 1; c < substep_classes; ++c)
         world.solvers[c].make_ready(entries, std::min(contacts, hard_contacts), std::min(joints, hard_contacts));
