@@ -5,7 +5,9 @@
 namespace lendulet {
 namespace {
 
-constexpr int most_contacts = 1024;       // of an island, times its multiple of substeps
+// Contacts of an island, times its multiple of substeps, at most: against buckling and for gaps of joints, and against
+// sinking alone, by which nothing falls.
+constexpr int most_contacts = 1024, most_sinking = 512;
 constexpr float allowed_sinking = 1e-3f;  // of the size of the bodies
 constexpr float buckling_reserve = 1.7f;  // above the load at which a column of boxes was seen to buckle
 constexpr float kept_reserve = 1.6f;  // a class is left only when fewer substeps would carry this many times the load
@@ -29,15 +31,24 @@ struct Load {
 // How far a contact sinks that carries once the weight of its lighter body, of two free ones.
 float sinking_of(float gravity, float h) { return 2.0f * (contact_leak / contact_bias) * gravity * h * h; }
 
-// The least class whose substeps carry `times` this load.
-int class_for(const IslandLoad& l, Load load, float gravity, float dt, int substeps, float times) {
-    float height = (l.highest - l.lowest) / gravity;
-    float drop = times * gravity * dt * dt * (contact_leak / contact_bias);
-    float needed = drop * maximum((2.0f / allowed_sinking) * load.sinking,
-                                  buckling_reserve * load.buckling * height * height);  // square of the substeps
+// The least class of which the square of the substeps is at least `needed`, or the most that so many contacts may take.
+int class_of_square(float needed, int substeps, int contacts, int most) {
     int c = 0;
     for (float n = static_cast<float>(substeps); c + 1 < substep_classes && n * n < needed; n *= 2.0f) ++c;
+    while (c > 0 && (contacts << c) > most) --c;
     return c;
+}
+
+int larger(int a, int b) { return a > b ? a : b; }
+
+// The least class whose substeps carry `times` this load.
+int class_for(const IslandLoad& l, Load load, float gravity, float dt, int substeps, float times) {
+    const float height = (l.highest - l.lowest) / gravity;
+    const float drop = times * gravity * dt * dt * (contact_leak / contact_bias);
+    const float sinking = drop * (2.0f / allowed_sinking) * load.sinking;
+    const float buckling = drop * buckling_reserve * load.buckling * height * height;
+    return larger(class_of_square(sinking, substeps, l.contacts, l.jointed ? most_contacts : most_sinking),
+                  class_of_square(buckling, substeps, l.contacts, most_contacts));
 }
 
 // Whether an island of many bodies moves in most places: nothing stands there.
@@ -50,8 +61,6 @@ bool can_flow(const IslandLoad& l, float gravity, float dt, int substeps) {
     const float h = 2.0f * dt / static_cast<float>(substeps);
     return sinking_of(gravity, h) * l.sampled_sinking < flowing_sinking * static_cast<float>(l.samples);
 }
-
-int larger(int a, int b) { return a > b ? a : b; }
 
 }  // namespace
 

@@ -1,6 +1,8 @@
 // Which islands take more substeps than are set: those under load, and not what has just landed.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "world/support.h"
 
 namespace lendulet::test {
@@ -71,6 +73,29 @@ TEST(HardIslands, ColumnsAndHeavyOnLightTakeMore) {
     loaded.add_rigid_body(def).value();
     run(loaded, 60);
     EXPECT_EQ(loaded.statistics().hard_bodies, 2);
+}
+
+// Nothing falls by sinking: where an island is so large that more substeps would be dear, it keeps to those set.
+TEST(HardIslands, LargeOnesMaySink) {
+    for (const auto& [side, hard] : {std::pair{6, true}, {13, false}}) {
+        World world = awake_world();
+        add_floor(world, 40.0f);
+        const float half = static_cast<float>(side);
+        for (int i = 0; i < side * side; ++i) {
+            const auto x = static_cast<float>(i % side), z = static_cast<float>(i / side);
+            world
+                .add_rigid_body({.shape = Box{},
+                                 .position = {2.0f * x - half + 1.0f, 0.5f, 2.0f * z - half + 1.0f},
+                                 .density = 10.0f})
+                .value();
+        }
+        world.add_rigid_body({.shape = Box{{half, 0.1f, half}}, .position = {0.0f, 1.1f, 0.0f}, .density = 1250.0f})
+            .value();
+        run(world, 10);
+        EXPECT_EQ(world.statistics().hard_bodies, hard ? side * side + 1 : 0) << side;
+        run(world, 120);
+        EXPECT_LT(world.statistics().max_penetration, 6e-3f) << side;
+    }
 }
 
 // A column that is blown apart is none any more: its boxes do not go on for seconds as if they carried it.
