@@ -360,8 +360,6 @@ void add_overlap(WorldData& world, const ColliderPair& p) {
 
 void list_contacts(WorldData& world) {
     RestingContacts& rest = world.resting;
-    world.touching.clear();
-    world.touching_bodies.clear();
     world.seams.clear();
     if (rest.hits_changed) {
         world.overlaps.clear();
@@ -370,18 +368,25 @@ void list_contacts(WorldData& world) {
         rest.hits_changed = false;
     }
     world.overlaps.resize_unset(static_cast<size_t>(rest.listed_hits));
-    const Array<ListedPair>& listed = world.pairs.listed;
-    for (size_t i = 0; i < listed.size(); ++i) {
-        if (i + prefetch_distance < listed.size()) prefetch(&world.pairs.pairs[listed[i + prefetch_distance].pair]);
-        const ColliderPair& p = world.pairs.pairs[listed[i].pair];
-        for (uint32_t k = 0; k < p.count; ++k) {
-            rest.place[p.first_record + k] = static_cast<uint32_t>(world.touching.size());
-            world.touching.push_back(p.first_record + k);
-            world.touching_bodies.push_back({p.body_a, p.body_b, 0.0f, p.fixed_a, false, false, false, 0});
+    // There is room for all, see find_contacts().
+    const ListedPair* listed = world.pairs.listed.data();
+    const ColliderPair* pairs = world.pairs.pairs.data();
+    uint32_t *place = rest.place.data(), *touching = world.touching.data(), count = 0;
+    TouchingBodies* bodies = world.touching_bodies.data();
+    const size_t listed_count = world.pairs.listed.size();
+    for (size_t i = 0; i < listed_count; ++i) {
+        if (i + prefetch_distance < listed_count) prefetch(&pairs[listed[i + prefetch_distance].pair]);
+        const ColliderPair& p = pairs[listed[i].pair];
+        for (uint32_t record = p.first_record; record < p.first_record + p.count; ++record, ++count) {
+            place[record] = count;
+            touching[count] = record;
+            bodies[count] = {p.body_a, p.body_b, 0.0f, p.fixed_a, false, false, false, 0};
         }
         if (p.fixed_a) world.seams.add(listed[i].pair, p);
         if (p.hit) add_overlap(world, p);
     }
+    world.touching.resize_unset(count);
+    world.touching_bodies.resize_unset(count);
 }
 
 void find_contacts(WorldData& world, float dt) {
