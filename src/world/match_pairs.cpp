@@ -59,6 +59,7 @@ uint32_t begin_pair(WorldData& world, const BoxPair& colliders) {
     }
     world.pairs.place_records(p, has_triangles(a) || has_triangles(b));
     p.kind = p.flipped ? kind_of(b, a) : kind_of(a, b);
+    p.bounces = p.kind == PairKind::boxes && combine(c.surface[p.a], c.surface[p.b]).restitution > 0.0f;
     return number;
 }
 

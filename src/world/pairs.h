@@ -46,6 +46,7 @@ struct ColliderPair {
     bool begun;    // not yet collided
     bool covered;  // some of its manifolds are: see mark_covered()
     bool listed;   // a step looks at it
+    bool bounces;  // of two sharp boxes: with a restitution
     float rest_h;  // of a pair that rests: the substep that its impulses belong to, s
 };
 

@@ -155,11 +155,7 @@ private:
     // bounce do so where they are nearest: at a point that is not yet there they would by a direction that is a guess.
     float way_of(const ColliderPair& p, float margin) const {
         const float near = minimum(world_.frames[p.a].near, world_.frames[p.b].near), way = margin - near;
-        if (way <= near) return 0.0f;
-        const ColliderStore& c = world_.colliders;
-        const float restitution = p.prepared > 0 ? world_.records[p.first_record].restitution
-                                                 : combine(c.surface[p.a], c.surface[p.b]).restitution;
-        return restitution > 0.0f ? 0.0f : way;
+        return way <= near || p.bounces ? 0.0f : way;
     }
 
     void keep(const ColliderPair& p, int i) {
