@@ -203,6 +203,7 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
         last = slot;
         ++info.collider_count;
         world.query_scene.changed(slot);
+        world.continuous.colliders_changed = true;
         world.frames.resize(world.colliders.slots.capacity());
         world.at_rest.resize(world.frames.size());
         world.box_place.resize(world.frames.size(), no_box);
@@ -345,6 +346,7 @@ Status World::remove_body(BodyId id) {
         world.colliders.info[c].body = no_slot;
         world.colliders.info[c].boxed = false;
         world.query_scene.changed(c);
+        world.continuous.colliders_changed = true;
         world.colliders.slots.remove(c);
         c = next;
     }

@@ -69,24 +69,39 @@ bool is_obstacle(const WorldData& world, uint32_t collider) {
            world.bodies.info[world.colliders.info[collider].body].type != BodyType::dynamic;
 }
 
-// Lists what nothing can push, if that is worth while.
-void list_obstacles(WorldData& world, float dt) {
+// Those that nothing can push, unless they are many.
+void find_obstacles(WorldData& world) {
     constexpr size_t few = 48;
     ContinuousData& c = world.continuous;
-    const int colliders = world.colliders.slots.count();
+    c.colliders_changed = false;
+    c.obstacle_slots.clear();
+    for (uint32_t slot : world.colliders.slots.order()) {
+        const ColliderInfo& info = world.colliders.info[slot];
+        if (world.bodies.info[info.body].type == BodyType::dynamic) continue;
+        if (info.boxed) c.obstacle_slots.push_back(slot);
+        else c.colliders_changed = true;  // until it has
+        if (c.obstacle_slots.size() > few) return c.obstacle_slots.clear();
+    }
+    std::sort(c.obstacle_slots.begin(), c.obstacle_slots.end());  // order: total
+}
+
+// Lists what nothing can push, if that is worth while.
+void list_obstacles(WorldData& world, float dt) {
+    ContinuousData& c = world.continuous;
     c.obstacles.clear();
-    c.few_obstacles = c.suspects.count() * 8 > colliders;
-    for (int i = 0; c.few_obstacles && i < colliders; ++i) {
-        const uint32_t slot = world.colliders.slots.in_order(i);
-        if (!is_obstacle(world, slot)) continue;
+    c.obstacle_boxes.clear();
+    if (c.suspects.count() * 8 <= world.colliders.slots.count()) return;
+    if (c.colliders_changed) find_obstacles(world);
+    for (uint32_t slot : c.obstacle_slots) {
         const uint32_t body = world.colliders.info[slot].body;
         const bool known = !c.obstacles.empty() && c.obstacles.back().carrier.body == body;
         const Carrier carrier = known ? c.obstacles.back().carrier : carrier_of(world, body, path_of(world, body, dt));
-        c.obstacles.push_back({slot, box_of(world, slot), carrier});
-        c.few_obstacles = c.obstacles.size() <= few;
+        const int lane = c.obstacles.count() % block_size;
+        if (lane == 0) c.obstacle_boxes.push_back({}), clear_lanes(c.obstacle_boxes.back());
+        const BroadBox& box = box_of(world, slot);
+        set_lane(c.obstacle_boxes.back(), lane, box.lower, box.upper);
+        c.obstacles.push_back({slot, carrier});
     }
-    auto by_collider = [](const Obstacle& a, const Obstacle& b) { return a.collider < b.collider; };
-    std::sort(c.obstacles.begin(), c.obstacles.end(), by_collider);  // order: total
 }
 
 // A body on its way: how it turned is found when something is near enough to ask.
@@ -105,7 +120,7 @@ public:
         float lower[3], upper[3];
         bounds_of(c.start[place_of(world_, body_)].position, world_.bodies.pose[body_].position, info.radius, lower,
                   upper);
-        if (obstacles && c.few_obstacles) meet_listed(lower, upper);
+        if (obstacles && !c.obstacles.empty()) meet_listed(lower, upper);
         else meet_found(lower, upper, obstacles, near);
         return impact_;
     }
@@ -114,11 +129,15 @@ private:
     // Of the obstacles on the list, those whose boxes are near. What lies in a drum that turns goes along with all of
     // its sides, which is asked but once.
     void meet_listed(const float lower[3], const float upper[3]) {
-        for (const Obstacle& o : world_.continuous.obstacles) {
-            if (o.carrier.body == asked_ && !far_) continue;
-            bool overlap = true;
-            for (int d = 0; d < 3; ++d) overlap &= o.box.lower[d] <= upper[d] && lower[d] <= o.box.upper[d];
-            if (overlap && moved_far(o.carrier)) meet_collider(o.collider, o.carrier.path);
+        const ContinuousData& c = world_.continuous;
+        const WideBox box = spread(lower, upper);
+        const Obstacle* obstacle = c.obstacles.data();
+        for (const BoxBlock& block : c.obstacle_boxes) {
+            for (uint32_t near = overlaps(block, box); near;) {
+                const Obstacle& o = obstacle[take_bit(near)];
+                if (moved_far(o.carrier)) meet_collider(o.collider, o.carrier.path);
+            }
+            obstacle += block_size;
         }
     }
     // Those that the broad phase finds: obstacles or others, rising.
@@ -308,7 +327,7 @@ void stop_at_impacts(WorldData& world, float dt) {
     list_obstacles(world, dt);
     // Task code takes no memory: the lists that it fills have room for all that it may find.
     for (Array<uint32_t>& near : c.near)
-        if (!c.few_obstacles && !c.suspects.empty()) near.reserve(static_cast<size_t>(world.colliders.slots.count()));
+        if (c.obstacles.empty() && !c.suspects.empty()) near.reserve(static_cast<size_t>(world.colliders.slots.count()));
     // Against what nothing can push: each body for itself.
     world.tasks.for_each(c.suspects.count(), suspects_per_task, [&](int begin, int end, int worker) {
         for (int i = begin; i < end; ++i) {

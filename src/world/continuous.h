@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/memory.h"
-#include "broad_phase/box.h"
+#include "broad_phase/block.h"
 #include "lendulet/math.h"
 
 namespace lendulet {
@@ -29,7 +29,6 @@ struct Carrier {
 // A collider that nothing can push.
 struct Obstacle {
     uint32_t collider;
-    BroadBox box;
     Carrier carrier;
 };
 
@@ -40,11 +39,21 @@ struct ContinuousData {
     Array<uint8_t> is_suspect;
     Array<float> fraction;              // after which a body was stopped, 1 where it was not
     std::vector<Array<uint32_t>> near;  // by worker: colliders near a suspect
-    Array<Obstacle> obstacles;          // rising, where they are few ...
-    bool few_obstacles = false;         // ... and suspects many: it is faster to go through them all
+    Array<uint32_t> obstacle_slots;     // colliders that nothing can push, rising; empty where they are many
+    bool colliders_changed = true;      // some came, went or have got a box since these were listed
+    Array<Obstacle> obstacles;          // these, in a step with many suspects: it is faster to go through them all
+    Array<BoxBlock> obstacle_boxes;     // theirs, in the same order
 
     ContinuousData(const Memory* memory, int workers)
-        : suspects(memory), bullets(memory), start(memory), is_suspect(memory), fraction(memory), obstacles(memory) {
+        
+        : suspects(memory),
+          bullets(memory),
+          start(memory),
+          is_suspect(memory),
+          fraction(memory),
+          obstacle_slots(memory),
+          obstacles(memory),
+          obstacle_boxes(memory) {
         for (int i = 0; i < workers; ++i) near.emplace_back(memory);
     }
 };
