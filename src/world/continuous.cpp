@@ -327,7 +327,8 @@ void stop_at_impacts(WorldData& world, float dt) {
     list_obstacles(world, dt);
     // Task code takes no memory: the lists that it fills have room for all that it may find.
     for (Array<uint32_t>& near : c.near)
-        if (c.obstacles.empty() && !c.suspects.empty()) near.reserve(static_cast<size_t>(world.colliders.slots.count()));
+        if (c.obstacles.empty() && !c.suspects.empty())
+            near.reserve(static_cast<size_t>(world.colliders.slots.count()));
     // Against what nothing can push: each body for itself.
     world.tasks.for_each(c.suspects.count(), suspects_per_task, [&](int begin, int end, int worker) {
         for (int i = begin; i < end; ++i) {

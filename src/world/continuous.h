@@ -45,7 +45,7 @@ struct ContinuousData {
     Array<BoxBlock> obstacle_boxes;     // theirs, in the same order
 
     ContinuousData(const Memory* memory, int workers)
-        
+
         : suspects(memory),
           bullets(memory),
           start(memory),
