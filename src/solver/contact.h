@@ -49,6 +49,7 @@ struct ContactEnds {
     uint8_t kind;  // see contact_kind()
     bool fixed_a;  // A is not moved by constraints
     bool bounces;  // with a restitution
+    bool held;     // all of its points carried something in the last step
     bool idle;     // held nothing in the last step
     bool passes;   // gets no row: it is left to impacts, see contact_passes
 };

@@ -299,6 +299,8 @@ bool may_meet(const SolverBodies& bodies, const BouncingContact& c, const Subste
     return approach >= k.bounce_speed && gap <= k.h * approach;
 }
 
+int larger(int a, int b) { return a > b ? a : b; }
+
 }  // namespace
 
 void prepare_bouncing(const SolverBodies& bodies, const ContactRecord* records, BouncingContact& c) {
@@ -386,14 +388,20 @@ bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, Bouncin
             const auto a = static_cast<size_t>(ends.a), b = static_cast<size_t>(ends.b);
             if (ends.passes && !(bouncing.disturbed[a] | bouncing.disturbed[b])) continue;
             // Nothing has changed where nobody was struck in the last sweep or in this one.
-            if (sweep > 0 && bodies.start[a].struck < number - 1 && bodies.start[b].struck < number - 1) continue;
+            const int struck = larger(bodies.start[a].struck, bodies.start[b].struck);
+            if (sweep > 0 && struck < number - 1) continue;
+            // What carries a load has met already: its bodies move against each other as far as the solver has not
+            // found yet who carries whom, until a blow comes to one of them.
+            const bool still = struck < first_sweep;
+            if (still && ends.held) continue;
             BouncingContact& c = bouncing.list[i];
             if (c.a < 0) prepare_bouncing(bodies, records, c);
             if (!may_meet(bodies, c, k)) continue;
             const ContactRecord& r = records[c.record];
             const float back = bouncing.extras ? bouncing.extras[c.record].tangential_restitution : 0.0f;
             bool met = false;
-            for (int j = 0; j < r.point_count; ++j) met |= bounce_point(bodies, r, r.points[j], back, k, number);
+            for (int j = 0; j < r.point_count; ++j)
+                if (!still || !(r.normal_impulse[j] > 0.0f)) met |= bounce_point(bodies, r, r.points[j], back, k, number);
             bounced |= met;
             if (met && bouncing.disturbed) bouncing.disturbed[a] = bouncing.disturbed[b] = 1;
         }

@@ -27,10 +27,11 @@ struct alignas(64) BouncingContact {
 };
 static_assert(sizeof(BouncingContact) == 64);
 
-// Its bodies, and whether it passes (contact_passes): then nothing comes of it while both move as the step began.
+// Its bodies; whether it passes (contact_passes): then nothing comes of it while both move as the step began; and whether
+// all of its points carried something then: these meet nothing before one of the bodies is struck.
 struct ImpactEnds {
     int32_t a, b;
-    bool passes;
+    bool passes, held;
 };
 
 // Contacts that can bounce or are swift, in order.

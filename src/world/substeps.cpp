@@ -34,6 +34,12 @@ float impulse_of(const ContactRecord& r) {
     return r.normal_impulse[0] + r.normal_impulse[1] + r.normal_impulse[2] + r.normal_impulse[3];
 }
 
+bool all_carry(const ContactRecord& r) {
+    bool all = true;
+    for (int j = 0; j < r.point_count; ++j) all &= r.normal_impulse[j] > 0.0f;
+    return all;
+}
+
 bool has_entry(const WorldData& world, uint32_t slot) { return world.island_loads[slot].step == world.steps + 1; }
 
 uint32_t root(uint32_t* parent, uint32_t i) {
@@ -242,6 +248,7 @@ void survey_contacts(WorldData& world) {
             const ContactRecord& r = world.records[world.touching[i]];
             TouchingBodies& t = world.touching_bodies[i];
             t.impulse = impulse_of(r);
+            t.held = all_carry(r);
             t.a_above = dot(Vec3{r.normal[0], r.normal[1], r.normal[2]}, world.config.gravity) > 0.0f;
             t.bounces = r.restitution > 0.0f || (r.flags & contact_swift) != 0;
             t.passes =

@@ -89,6 +89,7 @@ struct TouchingBodies {
     bool fixed_a;
     bool a_above;  // gravity presses A on B
     bool bounces;
+    bool held;     // all points carried something in the last step
     bool passes;   // see contact_passes; not where forces may move the bodies otherwise
     uint8_t kind;  // see contact_kind()
 };
