@@ -50,6 +50,7 @@ struct ContactEnds {
     bool fixed_a;  // A is not moved by constraints
     bool bounces;  // with a restitution
     bool held;     // all of its points carried something in the last step
+    bool crowded;  // bounces among so many others that blows are not followed from body to body
     bool idle;     // held nothing in the last step
     bool passes;   // gets no row: it is left to impacts, see contact_passes
 };

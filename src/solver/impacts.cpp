@@ -10,7 +10,7 @@ namespace {
 
 #include "solver/turn.inl"
 
-constexpr int max_sweeps = 8;
+constexpr int max_sweeps = 8, crowd_sweeps = 2;
 // Points closer than this count as touching already: positions a metre from the body's centre resolve 1e-7 m.
 constexpr float touching = 1e-6f;
 // What rounding may add to a distance, in parts of those that it is the sum of.
@@ -388,6 +388,7 @@ bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, Bouncin
             const auto a = static_cast<size_t>(ends.a), b = static_cast<size_t>(ends.b);
             if (ends.passes && !(bouncing.disturbed[a] | bouncing.disturbed[b])) continue;
             // Nothing has changed where nobody was struck in the last sweep or in this one.
+            if (sweep >= crowd_sweeps && ends.crowded) continue;
             const int struck = larger(bodies.start[a].struck, bodies.start[b].struck);
             if (sweep > 0 && struck < number - 1) continue;
             // What carries a load has met already: its bodies move against each other as far as the solver has not

@@ -116,7 +116,7 @@ size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const 
     for (int i = 0; i < count.all; ++i) {
         if (!ends[i].bounces) continue;
         bouncing_.push_back(BouncingContact(list[i]));
-        impact_ends_.push_back({ends[i].a, ends[i].b, ends[i].passes, ends[i].held});
+        impact_ends_.push_back({ends[i].a, ends[i].b, ends[i].passes, ends[i].held, ends[i].crowded});
     }
     passing_ = count.all - count.rows;
     return schedule_.row_bytes;

@@ -325,4 +325,10 @@ int part_for(WorldData& world, uint32_t slot, float dt) {
     return island.flows ? flow_part : l.substeps;
 }
 
+bool is_crowded(const WorldData& world, uint32_t slot) {
+    constexpr int crowd = 64;  // contacts
+    while (world.load_parent[slot] != slot) slot = world.load_parent[slot];
+    return world.island_loads[slot].contacts > crowd;
+}
+
 }  // namespace lendulet

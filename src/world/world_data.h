@@ -277,6 +277,8 @@ void finish_step(WorldData& world, float dt);
 inline constexpr int alone_part = solver_parts;
 // 0 .. solver_parts - 1 or alone_part, for a body that is about to be packed; after choose_substeps().
 int part_for(WorldData& world, uint32_t slot, float dt);
+// Whether a body in contact is one of an island so large that blows are not followed through it from body to body.
+bool is_crowded(const WorldData& world, uint32_t slot);
 
 // Mixes all warm-start impulses of joints into a hash, in creation order.
 uint64_t hash_joints(const WorldData& world, uint64_t start);

@@ -83,7 +83,7 @@ public:
         for (const ContactRecord& c : contacts)
             ends.push_back({c.body_a, c.body_b, contact_kind(c),
                             !(solver_bodies_.state[static_cast<size_t>(c.body_a)].inverse_mass > 0.0f),
-                            c.restitution > 0.0f, false, false, false});
+                            c.restitution > 0.0f, false, false, false, false});
         room_.rows.resize_unset(solver_.schedule(room_.sorter, solver_bodies_, ends.data(), list.data(), count));
         solver_.prepare(tasks_, solver_bodies_, contacts.data(), room_.rows.data());
         solver_.prepare_joints(tasks_, solver_bodies_,
