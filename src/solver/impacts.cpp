@@ -34,15 +34,14 @@ struct Side {
     BodyBlock* block;
     int at;  // of the body in its block
     Vec3 start_w, core0;
+    Vec3 acceleration, spin_up;  // of the centre of mass, and of the spin at constant L
     Moment now;
 
-    // `core`: of the point at the start of the step.
-    Side(SolverBodies& bodies, int32_t i, Vec3 core)
+    Side(SolverBodies& bodies, int32_t i)
         : state(&bodies.state[static_cast<size_t>(i)]),
           inertia(&bodies.inertia[static_cast<size_t>(i)]),
           block(&bodies.blocks[static_cast<size_t>(i / block_bodies)]),
-          at(i % block_bodies),
-          core0(core) {
+          at(i % block_bodies) {
         const float* m = inertia->inverse;
         const BodyStart& start = bodies.start[static_cast<size_t>(i)];
         start_w = load(start.w);
@@ -50,15 +49,20 @@ struct Side {
         now.inverse_inertia = {m[0], m[1], m[2], m[3], m[4], m[5]};
         now.v = load(start.v) + load(state->v);
         now.w = start_w + load(state->w);
+        if (!movable()) return;
+        acceleration = lanes(block->acceleration);
+        spin_up = now.inverse_inertia * cross(lanes(block->L), now.w);
+    }
+    // Takes another point, by its core at the start of the step.
+    void aim(Vec3 core) {
+        core0 = core;
         now.core = rotate(now.dq, core);
     }
     bool movable() const { return state->inverse_mass > 0.0f; }
     bool turns() const { return length_squared(now.w) > 0.0f; }
-    Vec3 acceleration() const { return movable() ? lanes(block->acceleration) : Vec3{}; }
     // Of the core point: with what turning about the centre of mass adds, also where the axis itself turns.
     Vec3 core_acceleration() const {
-        Vec3 spin_up = movable() ? now.inverse_inertia * cross(lanes(block->L), now.w) : Vec3{};
-        return acceleration() + (cross(now.w, cross(now.w, now.core)) + cross(spin_up, now.core));
+        return acceleration + (cross(now.w, cross(now.w, now.core)) + cross(spin_up, now.core));
     }
     Vec3 lanes(const BodyBlock::Lanes* p) const { return {p[0][at], p[1][at], p[2][at]}; }
     void add_lanes(BodyBlock::Lanes* p, Vec3 d) const { p[0][at] += d.x, p[1][at] += d.y, p[2][at] += d.z; }
@@ -90,7 +94,7 @@ struct Side {
         m.L = {};
         if (movable()) m.L = lanes(block->L) + (first ? Vec3{} : unsettled());
         if (time > 0.0f) {
-            m.v = now.v + time * acceleration();
+            m.v = now.v + time * acceleration;
             if (turns()) {
                 m.dq = turned(now.dq, m.L, now.w, now.inverse_inertia, time);
                 m.core = rotate(m.dq, core0);
@@ -214,14 +218,15 @@ float time_to_meet(Vec3 way, Vec3 v, float radii, float h) {
     return minimum(time, h);
 }
 
-// One point of a manifold; true where it bounced.
-bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPointRecord& point,
+// One point of a manifold, of which `a` and `b` are the bodies as they are; true where it bounced, and they are not any
+// more.
+bool bounce_point(SolverBodies& bodies, Side& a, Side& b, const ContactRecord& r, const ContactPointRecord& point,
                   float tangential_restitution, const SubstepConstants& k, int sweep) {
     const Vec3 n0 = load(r.normal), ra0 = load(point.position), offset = load(r.arm_offset);
     const float half_gap = 0.5f * point.separation;
     // Core points turn with their bodies, swept surfaces do not.
-    Side a(bodies, r.body_a, ra0 - (half_gap + r.radius_a) * n0);
-    Side b(bodies, r.body_b, ra0 - offset + (half_gap + r.radius_b) * n0);
+    a.aim(ra0 - (half_gap + r.radius_a) * n0);
+    b.aim(ra0 - offset + (half_gap + r.radius_b) * n0);
     // The normal of a face that a corner meets turns with its body, see turn_row().
     Vec3 n = turns_with_face(r) ? rotate((r.follow > 0.5f ? a : b).now.dq, n0) : n0;
     const Vec3 apart = offset + (load(b.state->dp) - load(a.state->dp));
@@ -245,7 +250,7 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
     for (int times = 0;; ++times) {
         m.a = a.after(time, k.first);
         m.b = b.after(time, k.first);
-        const Vec3 drift = b.now.v - a.now.v, acceleration = b.acceleration() - a.acceleration();
+        const Vec3 drift = b.now.v - a.now.v, acceleration = b.acceleration - a.acceleration;
         between = apart + (time * drift + (0.5f * time * time) * acceleration);
         if (balls) n = normalize(between + m.b.core - m.a.core, n);
         // Both get the impulse at one world point, on the surface of the body that it rides on.
@@ -268,6 +273,20 @@ bool bounce_point(SolverBodies& bodies, const ContactRecord& r, const ContactPoi
     if (a.movable()) bodies.start[static_cast<size_t>(r.body_a)].struck = sweep;
     if (b.movable()) bodies.start[static_cast<size_t>(r.body_b)].struck = sweep;
     return true;
+}
+
+// All points of a manifold; of `fresh` ones those that have carried nothing.
+bool bounce_points(SolverBodies& bodies, const ContactRecord& r, bool fresh, float tangential_restitution,
+                   const SubstepConstants& k, int sweep) {
+    bool met = false;
+    Side a(bodies, r.body_a), b(bodies, r.body_b);
+    for (int j = 0; j < r.point_count; ++j) {
+        if (fresh && r.normal_impulse[j] > 0.0f) continue;
+        if (!bounce_point(bodies, a, b, r, r.points[j], tangential_restitution, k, sweep)) continue;
+        met = true;
+        a = Side(bodies, r.body_a), b = Side(bodies, r.body_b);
+    }
+    return met;
 }
 
 // Whether a contact may meet faster than bounces do within the substep, by bounds that hold for all its points: how far
@@ -400,9 +419,7 @@ bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, Bouncin
             if (!may_meet(bodies, c, k)) continue;
             const ContactRecord& r = records[c.record];
             const float back = bouncing.extras ? bouncing.extras[c.record].tangential_restitution : 0.0f;
-            bool met = false;
-            for (int j = 0; j < r.point_count; ++j)
-                if (!still || !(r.normal_impulse[j] > 0.0f)) met |= bounce_point(bodies, r, r.points[j], back, k, number);
+            const bool met = bounce_points(bodies, r, still, back, k, number);
             bounced |= met;
             if (met && bouncing.disturbed) bouncing.disturbed[a] = bouncing.disturbed[b] = 1;
         }
