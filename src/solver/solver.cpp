@@ -114,7 +114,8 @@ size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const 
     bouncing_.clear();
     impact_ends_.clear();
     for (int i = 0; i < count.all; ++i) {
-        if (!ends[i].bounces) continue;
+        // In a crowd what carries a load goes on by rows.
+        if (!ends[i].bounces || (ends[i].crowded && !ends[i].idle && !ends[i].passes)) continue;
         bouncing_.push_back(BouncingContact(list[i]));
         impact_ends_.push_back({ends[i].a, ends[i].b, ends[i].passes, ends[i].held, ends[i].crowded});
     }

@@ -187,7 +187,8 @@ void pack_contacts(WorldData& world) {
     world.tasks.for_each(ends.count(), contacts_per_task, [&](int begin, int end, int) {
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
             const TouchingBodies& t = world.active_bodies[i];
-            ends[i] = {place_of(t.a), place_of(t.b), t.kind, t.fixed_a, t.bounces, t.held, t.bounces && is_crowded(world, t.b), t.impulse == 0.0f, t.passes};
+            const bool crowded = t.bounces && is_crowded(world, t.b), idle = t.impulse == 0.0f;
+            ends[i] = {place_of(t.a), place_of(t.b), t.kind, t.fixed_a, t.bounces, t.held, crowded, idle, t.passes};
         }
     });
     sort_by_class(world);

@@ -164,7 +164,7 @@ LENDULET_FORCE_INLINE void LoadSurvey::count(IslandLoad& island, float impulse, 
 void LoadSurvey::sample(IslandLoad& island, const TouchingBodies& ends, bool both, Vec3 velocity_a) const {
     const IslandLoad &a = loads[ends.a], &b = loads[ends.b];
     ++island.samples;
-    island.stirred += !ends.bounces && is_stirred(b, velocity_a, gravity);
+    island.stirred += !ends.swift && is_stirred(b, velocity_a, gravity);
     float lightest = b.inverse_mass, radius = b.radius;
     if (both) {
         lightest = maximum(lightest, a.inverse_mass);
@@ -250,7 +250,8 @@ void survey_contacts(WorldData& world) {
             t.impulse = impulse_of(r);
             t.held = all_carry(r);
             t.a_above = dot(Vec3{r.normal[0], r.normal[1], r.normal[2]}, world.config.gravity) > 0.0f;
-            t.bounces = r.restitution > 0.0f || (r.flags & contact_swift) != 0;
+            t.swift = (r.flags & contact_swift) != 0;
+            t.bounces = r.restitution > 0.0f || t.swift;
             t.passes =
                 t.bounces && (r.flags & contact_passes) != 0 && moves_freely(world, t.a) && moves_freely(world, t.b);
             t.kind = contact_kind(r);

@@ -88,7 +88,7 @@ struct TouchingBodies {
     float impulse;  // along the normal, of the last substep, N s
     bool fixed_a;
     bool a_above;  // gravity presses A on B
-    bool bounces;
+    bool bounces, swift;
     bool held;     // all points carried something in the last step
     bool passes;   // see contact_passes; not where forces may move the bodies otherwise
     uint8_t kind;  // see contact_kind()
