@@ -43,6 +43,8 @@ inline constexpr uint32_t contact_balls = 16;   // of two balls: its normal is t
 inline constexpr uint32_t contact_swift = 32;   // in a substep an arm grows by much of a body's size, see impacts.h
 inline constexpr uint32_t contact_passes = 64;  // met only if something else changes how the bodies move in this step
 
+inline constexpr uint32_t contact_crowded = 128;  // see ContactEnds; set where it bounces
+
 // What it takes to schedule a contact, so that those who go through all of them, one by one, need not read the records.
 struct ContactEnds {
     int32_t a, b;  // solver bodies; see ContactRecord

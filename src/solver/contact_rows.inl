@@ -322,9 +322,10 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     const F zero = splat<F>(0.0f);
     int live = group.count - first < W ? group.count - first : W;
     RecordQuads<W> record{floats_of(records), {}};
-    F sharp = zero;  // 1 where corners of one body meet a face of the other
-    F balls = zero;  // and where two balls meet
-    F swift = zero;  // and where impacts are handled whatever the restitution
+    F sharp = zero;             // 1 where corners of one body meet a face of the other
+    F balls = zero;             // and where two balls meet
+    F sparse = splat<F>(1.0f);  // 0 in a crowd: blows that are not followed are met by rows
+    F swift = zero;             // and where impacts are handled whatever the restitution
     int32_t body_a[W], body_b[W];
     for (int l = 0; l < W; ++l) {
         int32_t i = static_cast<int32_t>(group.order[first + (l < live ? l : 0)]);
@@ -335,6 +336,7 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
         if (!group.rolling && (flags & contact_sharp)) set_lane(sharp, l, 1.0f);
         if (flags & contact_balls) set_lane(balls, l, 1.0f);
         if (flags & contact_swift) set_lane(swift, l, 1.0f);
+        if (flags & contact_crowded) set_lane(sparse, l, 0.0f);
         c.a[l] = 8 * body_a[l];
         c.b[l] = 8 * body_b[l];
     }
@@ -345,7 +347,7 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     c.static_friction = m.head[3];
     c.dynamic_friction = m.friction[7];
     c.radius_a = m.tail[0], c.radius_b = m.tail[1], c.follow = m.tail[2];
-    c.bounce_speed = select(maximum(m.tail[3], swift) > zero, splat<F>(-1.0f), splat<F>(-1e30f));
+    c.bounce_speed = select(maximum(sparse * m.tail[3], swift) > zero, splat<F>(-1.0f), splat<F>(-1e30f));
     c.push_speed = m.tail[7];
     sharp = select(absolute(c.follow - splat<F>(0.5f)) > splat<F>(0.25f), sharp, zero);
     sharp = select(maximum(c.radius_a, c.radius_b) > zero, zero, sharp);

@@ -28,8 +28,8 @@ struct alignas(64) BouncingContact {
 static_assert(sizeof(BouncingContact) == 64);
 
 // Its bodies; whether it passes (contact_passes): then nothing comes of it while both move as the step began; whether
-// all of its points carried something then: these meet nothing before one of the bodies is struck; and whether it is one
-// of a crowd, in which blows go on by rows.
+// all of its points carried something then: these meet nothing before one of the bodies is struck; and whether it is
+// one of a crowd, in which blows go on by rows.
 struct ImpactEnds {
     int32_t a, b;
     bool passes, held, crowded;

@@ -199,6 +199,7 @@ void pack_contacts(WorldData& world) {
             ContactRecord& r = world.records[world.active[i]];
             r.body_a = ends[i].a;
             r.body_b = ends[i].b;
+            if (ends[i].bounces) r.flags = ends[i].crowded ? r.flags | contact_crowded : r.flags & ~contact_crowded;
         }
     });
 }
