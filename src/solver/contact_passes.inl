@@ -70,9 +70,8 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
             hold = c.static_friction * lever;
             F slide = c.dynamic_friction * lever;
             ft = select(size > hold, select(ft > zero, slide, zero - slide), ft);
-        } else {
-            ft = select(total > zero, ft, zero);
         }
+        ft = select(total > zero, ft, zero);
         angular = (ft - c.friction.twist) * c.n;
         c.friction.twist = ft;
     }
