@@ -38,11 +38,24 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
     F size2 = f1 * f1 + f2 * f2;
     auto slides = size2 > sticking * sticking;
     // Without load nothing sticks, also where the square of what slides is too small a number.
-    F scale = select(slides, zero, select(total > zero, one, zero));
+    F keeps = select(slides, zero, select(total > zero, one, zero));
     auto drags = select(slides, sliding, zero) > zero;
-    if (mask_bits(drags)) scale = select(drags, sliding / maximum(square_root(size2), splat<F>(1e-30f)), scale);
-    f1 = scale * f1;
-    f2 = scale * f2;
+    F held1 = keeps * f1, held2 = keeps * f2;
+    if (mask_bits(drags)) {
+        const F tangential[3] = {m[0], m[1], P > 1 ? m[3] : m[2]};
+        F cut1 = f1, cut2 = f2;
+        cut_to_limit(cut1, cut2, tangential, square_root(size2), sliding);
+        held1 = select(drags, cut1, held1);
+        held2 = select(drags, cut2, held2);
+        if constexpr (P > 1) {
+            // The twist that stops with the slip that is left, instead of without any.
+            F d = inverse_or_zero(m[0] * m[3] - m[1] * m[1]);
+            F along1 = d * (m[3] * m[2] - m[1] * m[4]), along2 = d * (m[0] * m[4] - m[1] * m[2]);
+            ft = select(drags, ft + (along1 * (held1 - f1) + along2 * (held2 - f2)), ft);
+        }
+    }
+    f1 = held1;
+    f2 = held2;
     linear = (f1 - c.friction.tangent[0]) * c.t1 + (f2 - c.friction.tangent[1]) * t2;
     c.friction.tangent[0] = f1;
     c.friction.tangent[1] = f2;
@@ -57,9 +70,8 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
             hold = c.static_friction * lever;
             F slide = c.dynamic_friction * lever;
             ft = select(size > hold, select(ft > zero, slide, zero - slide), ft);
-        } else {
-            ft = select(total > zero, ft, zero);
         }
+        ft = select(total > zero, ft, zero);
         angular = (ft - c.friction.twist) * c.n;
         c.friction.twist = ft;
     }

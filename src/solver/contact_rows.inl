@@ -292,7 +292,9 @@ struct RowPlace {
             least = minimum(least, s);
         }
         F mean = one / maximum(weight, one);
-        ra = mean * sum + ((follow - half) * (least + (least - mean * gap))) * n;
+        // Silenced manifolds (seams.cpp) have no points: their centre may be anywhere near the body.
+        F rise = select(weight > zero, (follow - half) * (least + (least - mean * gap)), zero);
+        ra = mean * sum + rise * n;
         rb = ra - Vec3T<F>{m.tail[4], m.tail[5], m.tail[6]};
         Vec3T<F> t2 = cross(n, t1);
         for (int j = 0; j < P; ++j) {

@@ -157,6 +157,46 @@ struct Meeting {
     }
 };
 
+struct Along {
+    float x, y;
+};
+// The unit vector along which friction acts on what slides on after an impact: against the slip that is left, which
+// makes it (1 + s M) f' = f as for rows (round_limit.inl), with f the impulse that would stop the slip and M the
+// inverse of `K` (11 12 22), the response of the slip where the normal impulse follows suit. Here the limit falls with
+// f', as most - a f'x - b f'y, so s is found by false position, as x = s / (1 + s) in units in which M has the trace 1.
+Along sliding_direction(const float K[3], float fx, float fy, float most, float a, float b) {
+    // M over its trace is the adjugate of K over its trace.
+    const float share = 1.0f / maximum(K[0] + K[2], 1e-30f);
+    const float m11 = share * K[2], m12 = -share * K[1], m22 = share * K[0];
+    Along f{fx, fy};
+    auto beyond = [&](float x) {
+        const float rest = 1.0f - x, d11 = rest + x * m11, d12 = x * m12, d22 = rest + x * m22;
+        const float scale = rest / maximum(d11 * d22 - d12 * d12, 1e-30f);
+        f = {scale * (d22 * fx - d12 * fy), scale * (d11 * fy - d12 * fx)};
+        return square_root(f.x * f.x + f.y * f.y) - (most - a * f.x - b * f.y);
+    };
+    float low = 0.0f, high = 1.0f - 1e-6f, above = beyond(low), below = beyond(high);
+    if (above > 0.0f && below < 0.0f) {
+        int side = 0;
+        for (int i = 0; i < 12; ++i) {
+            const float x = (low * below - high * above) / (below - above), y = beyond(x);
+            if (!(absolute(y) > 1e-5f * most)) break;
+            // The end that stays counts half, or it would stay for ever (the Illinois rule).
+            if (y > 0.0f) {
+                low = x, above = y;
+                if (side == 1) below *= 0.5f;
+                side = 1;
+            } else {
+                high = x, below = y;
+                if (side == -1) above *= 0.5f;
+                side = -1;
+            }
+        }
+    }
+    const float size = maximum(square_root(f.x * f.x + f.y * f.y), 1e-30f);
+    return {f.x / size, f.y / size};
+}
+
 // The impulse on B: Newton's restitution along n, and against the slip Coulomb's friction on the whole normal impulse
 // (thesis 3.3.4, magnitudes as in THESIS-NOTES). All three components at once, since bodies other than balls answer to
 // an impulse along n across it too. Newton's law alone would then let some impacts gain energy (Kane, Levinson,
@@ -177,13 +217,14 @@ Vec3 impact_impulse(const Meeting& m, const ContactRecord& r, Vec3 n, float spee
     float pressed = scale * (c * rise + cx * sx + cy * sy);
     float fx = scale * (cx * rise + (nn * yy - ny * ny) * sx + (nx * ny - nn * xy) * sy);
     float fy = scale * (cy * rise + (nx * ny - nn * xy) * sx + (nn * xx - nx * nx) * sy);
-    const float friction = square_root(fx * fx + fy * fy);
-    if (!(friction <= r.static_friction * pressed)) {
-        const float ux = fx / friction, uy = fy / friction;
-        const float answer = nn + r.dynamic_friction * (nx * ux + ny * uy);
+    if (!(square_root(fx * fx + fy * fy) <= r.static_friction * pressed)) {
+        const float K[3] = {xx - nx * nx / nn, xy - nx * ny / nn, yy - ny * ny / nn};
+        const float push = r.dynamic_friction / nn;
+        const Along along = sliding_direction(K, fx, fy, push * rise, push * nx, push * ny);
+        const float answer = nn + r.dynamic_friction * (nx * along.x + ny * along.y);
         if (!(answer > 0.1f * nn)) return smooth;
         pressed = rise / answer;
-        fx = r.dynamic_friction * pressed * ux, fy = r.dynamic_friction * pressed * uy;
+        fx = r.dynamic_friction * pressed * along.x, fy = r.dynamic_friction * pressed * along.y;
     }
     const Vec3 impulse = pressed * n + (fx * x + fy * y);
     const float work = dot(impulse, slip), effort = pressed * (nn * pressed + 2.0f * (nx * fx + ny * fy)) +

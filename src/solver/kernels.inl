@@ -14,6 +14,8 @@ namespace {
 
 #include "solver/contact_motion.inl"
 
+#include "solver/round_limit.inl"
+
 #include "solver/contact_passes.inl"
 
 #include "solver/rolling.inl"

@@ -66,8 +66,15 @@ LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> solve_rolling(const ContactRow<W, P>
     F x = dot(spin, c.t1), y = dot(spin, t2), most = r.rolling * pressed;
     F f1 = r.tangent[0] - (r.mass[0] * x + r.mass[1] * y), f2 = r.tangent[1] - (r.mass[1] * x + r.mass[2] * y);
     F size2 = f1 * f1 + f2 * f2;
-    F scale = select(size2 > most * most, most / maximum(square_root(size2), splat<F>(1e-30f)), one);
-    f1 = scale * f1, f2 = scale * f2;
+    auto rolls = size2 > most * most;
+    F keeps = select(rolls, zero, one), held1 = keeps * f1, held2 = keeps * f2;
+    auto drags = select(rolls, most, zero) > zero;
+    if (mask_bits(drags)) {
+        cut_to_limit(f1, f2, r.mass, square_root(size2), most);
+        held1 = select(drags, f1, held1);
+        held2 = select(drags, f2, held2);
+    }
+    f1 = held1, f2 = held2;
     Vec3T<F> turn = (f1 - r.tangent[0]) * c.t1 + (f2 - r.tangent[1]) * t2;
     r.tangent[0] = f1, r.tangent[1] = f2;
     F z = dot(c.n, spin + K * turn);

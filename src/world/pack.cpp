@@ -243,6 +243,9 @@ void forget_impulses(WorldData& world) {
         for (float x : r.normal_impulse) sum += x;
         for (float x : r.friction_impulse) sum += x;
         if (!is_finite(sum)) clear_impulses(r);
+        if ((r.flags & contact_rolls) == 0) continue;
+        float* turning = world.extras[i].impulse;
+        if (!all_finite(turning, 3)) turning[0] = turning[1] = turning[2] = 0.0f;
     }
 }
 

@@ -46,6 +46,9 @@ Status check_config(const WorldConfig& c) {
         return bad_config("workers are " + std::to_string(c.workers) + ", must be 1 to 64");
     if (c.width != 0 && c.width != 1 && c.width != 4 && c.width != 8 && c.width != 16)
         return bad_config("width is " + std::to_string(c.width) + ", must be 1, 4, 8 or 16");
+    if (c.broad_phase > BroadPhaseType::wide_tree) return bad_config("that broad phase is none");
+    if (c.simplex > SimplexSolver::half_space) return bad_config("that simplex solver is none");
+    if (c.integrator > Integrator::runge_kutta_4) return bad_config("that integrator is none");
     if ((c.allocator.allocate == nullptr) != (c.allocator.free == nullptr))
         return bad_config("an allocator hook needs both allocate and free");
     return {};

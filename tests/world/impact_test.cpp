@@ -62,10 +62,10 @@ struct Rises {
     double largest = 0.0;
     int throws = 0;
 };
-Rises rises(const Shape& shape, const Surface& s, float spin, bool at_other) {
+Rises rises(const Shape& shape, const Surface& s, float spin, bool at_other, int throws = 20) {
     Numbers numbers;
     Rises all;
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < throws; ++i) {
         double largest = 0.0;
         World world = thrown(shape, s, spin, at_other, numbers);
         const double start = world.kinetic_energy();
@@ -104,9 +104,9 @@ TEST(Impacts, OfBallsAndCapsulesAddNoEnergy) {
 TEST(Impacts, WithoutRestitutionAddNoEnergy) {
     for (const Shape& shape : shapes)
         for (float spin : {0.0f, 10.0f}) {
-            const Rises r = rises(shape, {0.6f, 0.0f, 0.0f}, spin, false);
-            EXPECT_LE(r.throws, 1) << spin;
-            EXPECT_LT(r.largest, 1e-2) << spin;
+            const Rises r = rises(shape, {0.6f, 0.0f, 0.0f}, spin, false, 200);
+            EXPECT_LE(r.throws, 10) << spin;
+            EXPECT_LT(r.largest, 2e-2) << spin;
         }
 }
 

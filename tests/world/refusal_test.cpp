@@ -273,6 +273,9 @@ TEST(Refusals, OfSettings) {
     EXPECT_EQ(code(WorldBuilder{}.bounciness(1.5f)), bad_config);
     EXPECT_EQ(code(WorldBuilder{}.workers(0)), bad_config);
     EXPECT_EQ(code(WorldBuilder{}.width(3)), bad_config);
+    EXPECT_EQ(code(WorldBuilder{}.broad_phase(static_cast<BroadPhaseType>(99))), bad_config);
+    EXPECT_EQ(code(WorldBuilder{}.simplex(static_cast<SimplexSolver>(99))), bad_config);
+    EXPECT_EQ(code(WorldBuilder{}.integrator(static_cast<Integrator>(99))), bad_config);
     EXPECT_EQ(code(WorldBuilder{}.gravity({0.0f, -1e6f, 0.0f})), io) << "strong gravity is allowed";
 }
 
