@@ -110,8 +110,8 @@ LENDULET_FORCE_INLINE void sweep_normals(ContactRow<W, P>& c, const WideVelocity
             bias = select(apart, s * inverse_h, zero);
         }
         F next = maximum((kept - p.mass * bias) - p.mass * vn, zero);
-        // What is on its way and carries nothing yet is left to the impact stage, which knows the time of impact.
-        next = select((vn < bounce) & apart & (p.impulse <= zero), zero, next);
+        // What carries nothing yet is left to the impact stage, which knows the time of impact.
+        next = select((vn < bounce) & (p.impulse <= zero), zero, next);
         change[j] = next - p.impulse;
         p.impulse = next;
     }

@@ -327,7 +327,7 @@ int part_for(WorldData& world, uint32_t slot, float dt) {
 }
 
 bool is_crowded(const WorldData& world, uint32_t slot) {
-    constexpr int crowd = 64;  // contacts
+    constexpr int crowd = 1024;  // contacts
     while (world.load_parent[slot] != slot) slot = world.load_parent[slot];
     return world.island_loads[slot].contacts > crowd;
 }

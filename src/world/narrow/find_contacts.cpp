@@ -364,7 +364,8 @@ void list_contacts(WorldData& world) {
         rest.hits_changed = false;
     }
     world.overlaps.resize_unset(static_cast<size_t>(rest.listed_hits));
-    // There is room for all, see find_contacts().
+    world.touching.reserve(world.records.size());
+    world.touching_bodies.reserve(world.records.size());
     const ListedPair* listed = world.pairs.listed.data();
     const ColliderPair* pairs = world.pairs.pairs.data();
     uint32_t *place = rest.place.data(), *touching = world.touching.data(), count = 0;
