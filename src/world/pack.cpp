@@ -187,7 +187,7 @@ void pack_contacts(WorldData& world) {
     world.tasks.for_each(ends.count(), contacts_per_task, [&](int begin, int end, int) {
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
             const TouchingBodies& t = world.active_bodies[i];
-            const bool crowded = t.bounces && is_crowded(world, t.b), idle = t.impulse == 0.0f;
+            const bool crowded = is_crowded(world, t), idle = t.impulse == 0.0f;
             ends[i] = {place_of(t.a), place_of(t.b), t.kind, t.fixed_a, t.bounces, t.held, crowded, idle, t.passes};
         }
     });

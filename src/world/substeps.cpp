@@ -252,6 +252,7 @@ void survey_contacts(WorldData& world) {
             t.a_above = dot(Vec3{r.normal[0], r.normal[1], r.normal[2]}, world.config.gravity) > 0.0f;
             t.swift = (r.flags & contact_swift) != 0;
             t.bounces = r.restitution > 0.0f || t.swift;
+            t.elastic = r.restitution >= 0.9f;
             t.passes =
                 t.bounces && (r.flags & contact_passes) != 0 && moves_freely(world, t.a) && moves_freely(world, t.b);
             t.kind = contact_kind(r);
@@ -326,10 +327,11 @@ int part_for(WorldData& world, uint32_t slot, float dt) {
     return island.flows ? flow_part : l.substeps;
 }
 
-bool is_crowded(const WorldData& world, uint32_t slot) {
-    constexpr int crowd = 1024;  // contacts
+bool is_crowded(const WorldData& world, const TouchingBodies& bodies) {
+    constexpr int crowd = 64, elastic_crowd = 4096;  // contacts
+    uint32_t slot = bodies.b;
     while (world.load_parent[slot] != slot) slot = world.load_parent[slot];
-    return world.island_loads[slot].contacts > crowd;
+    return bodies.bounces && world.island_loads[slot].contacts > (bodies.elastic ? elastic_crowd : crowd);
 }
 
 }  // namespace lendulet

@@ -88,7 +88,7 @@ struct TouchingBodies {
     float impulse;  // along the normal, of the last substep, N s
     bool fixed_a;
     bool a_above;  // gravity presses A on B
-    bool bounces, swift;
+    bool bounces, elastic, swift;
     bool held;     // all points carried something in the last step
     bool passes;   // see contact_passes; not where forces may move the bodies otherwise
     uint8_t kind;  // see contact_kind()
@@ -277,8 +277,9 @@ void finish_step(WorldData& world, float dt);
 inline constexpr int alone_part = solver_parts;
 // 0 .. solver_parts - 1 or alone_part, for a body that is about to be packed; after choose_substeps().
 int part_for(WorldData& world, uint32_t slot, float dt);
-// Whether a body in contact is one of an island so large that blows are not followed through it from body to body.
-bool is_crowded(const WorldData& world, uint32_t slot);
+// Whether a contact bounces in an island so large that blows are not followed through it from body to body; those that
+// lose next to no energy are in larger ones.
+bool is_crowded(const WorldData& world, const TouchingBodies& bodies);
 
 // Mixes all warm-start impulses of joints into a hash, in creation order.
 uint64_t hash_joints(const WorldData& world, uint64_t start);
