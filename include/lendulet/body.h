@@ -135,6 +135,7 @@ public:
     Position position() const;  // of the body's frame, m
     Quat orientation() const;   // body frame to world
     Quat rotation() const { return orientation(); }
+    Pose pose() const { return {position(), orientation()}; }  // pose() * p: where the point p of its frame is
     Mat3 rotation_matrix() const;
     std::string_view name() const;  // empty where none was given
     uint64_t user_data() const;

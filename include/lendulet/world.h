@@ -139,6 +139,8 @@ public:
     Result<BodyId> add_static_body(const StaticBodyDef& def);
     // Removes the body with its colliders and joints. Errors: stale_id, wrong_world.
     Status remove_body(BodyId id);
+    // Another number of the user's own for a body; snapshots do not hold it. Errors: stale_id, wrong_world.
+    Status set_user_data(BodyId id, uint64_t user_data);
     // Errors: stale_id, wrong_world, bad_joint, no_dynamic_body, non_finite.
     Result<JointId> add_joint(const JointDef& def);
     Status remove_joint(JointId id);
