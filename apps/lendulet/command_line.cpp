@@ -208,7 +208,7 @@ int execute(int argc, char** argv) {
                     "\" is no command; there are run, view, info, scenes, verify, explain and bench");
     }
     if (first == "bench" && (argc < 3 || (argv[2][0] != '-' && !is_benchmark(argv[2]))))
-        return fail(argc < 3 ? std::string("bench needs a word more: ") + benchmarks
+        return fail(argc < 3 ? std::string("bench needs the name of a benchmark; there are ") + benchmarks
                              : "\"" + printable(argv[2]) + "\" is no benchmark; there are " + benchmarks);
     CLI::App app{"Lendulet: rigid bodies in three dimensions.", "lendulet"};
     app.set_version_flag("--version", "lendulet " LENDULET_VERSION);
