@@ -188,6 +188,9 @@ void refuse_empty(const CLI::App& command) {
     }
 }
 
+constexpr const char* benchmarks = "broad-phase, scenes and collision";
+bool is_benchmark(std::string_view name) { return name == "broad-phase" || name == "scenes" || name == "collision"; }
+
 // The exit code of a benchmark, or 2 after its sentence.
 int finish(const Result<int>& measured) { return measured.ok() ? measured.value() : fail(measured.error().message); }
 
@@ -204,6 +207,9 @@ int execute(int argc, char** argv) {
         return fail("\"" + printable(first) +
                     "\" is no command; there are run, view, info, scenes, verify, explain and bench");
     }
+    if (first == "bench" && (argc < 3 || (argv[2][0] != '-' && !is_benchmark(argv[2]))))
+        return fail(argc < 3 ? std::string("bench needs the name of a benchmark; there are ") + benchmarks
+                             : "\"" + printable(argv[2]) + "\" is no benchmark; there are " + benchmarks);
     CLI::App app{"Lendulet: rigid bodies in three dimensions.", "lendulet"};
     app.set_version_flag("--version", "lendulet " LENDULET_VERSION);
     app.require_subcommand(1);

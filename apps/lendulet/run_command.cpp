@@ -3,6 +3,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 
@@ -95,7 +96,13 @@ bool is_gltf(const std::string& name) { return ends_with(name, ".gltf") || ends_
 bool is_repro(const std::string& name) { return ends_with(name, ".json"); }
 
 Result<Scene> open_scene(const std::string& name, const RunOptions& options) {
-    return is_gltf(name) ? load_gltf(name, configuration(options)) : build_scene(name, configuration(options));
+    if (is_gltf(name)) return load_gltf(name, configuration(options));
+    Result<Scene> scene = build_scene(name, configuration(options));
+    std::error_code ignored;
+    if (!scene.ok() && scene.error().code == ErrorCode::unknown_name && std::filesystem::exists(name, ignored))
+        return Error{ErrorCode::unknown_name,
+                     printable(name) + ": is neither a .gltf, .glb or .json file nor the name of a built-in scene"};
+    return scene;
 }
 
 int run(const RunOptions& options) {

@@ -95,9 +95,9 @@ struct RigidBodyDef {
     std::optional<float> mass{};           // kg, 1e-9 .. 1e12; scales the inertia unless that is given too
     std::optional<Vec3> centre_of_mass{};  // body frame, m
     std::optional<SymMat3> inertia{};      // about the centre of mass, body axes, kg m^2
-    float linear_damping = 0.0f;           // 1/s: velocity decays as exp(-damping t)
-    float angular_damping = 0.0f;          // 1/s
-    float gravity_factor = 1.0f;
+    float linear_damping = 0.0f;           // 1/s, >= 0: velocity decays as exp(-damping t)
+    float angular_damping = 0.0f;          // 1/s, >= 0: likewise the angular velocity
+    float gravity_factor = 1.0f;           // times the world's gravity; any finite number, 0: weightless
     bool allow_sleep = true;
     bool kinematic = false;  // moves with its given velocities, is not pushed by anything
     // Never passes through other dynamic bodies, however fast; no body passes through static and kinematic ones in any
@@ -135,6 +135,7 @@ public:
     Position position() const;  // of the body's frame, m
     Quat orientation() const;   // body frame to world
     Quat rotation() const { return orientation(); }
+    Pose pose() const { return {position(), orientation()}; }  // pose() * p: where the point p of its frame is
     Mat3 rotation_matrix() const;
     std::string_view name() const;  // empty where none was given
     uint64_t user_data() const;

@@ -57,7 +57,7 @@ struct SixDegrees {
     JointAxis distance, swing;
     bool distance_axes[3] = {}, swing_axes[3] = {};  // two or three of each where it is used, else none
 };
-// Places of the coordinates in World::set_motor and JointState.
+// Places of the coordinates in World::set_motor, World::set_spring and JointState.
 enum class Coordinate : uint8_t { x, y, z, about_x, about_y, about_z, distance, swing };
 inline constexpr int joint_coordinates = 8;
 

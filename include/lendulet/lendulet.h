@@ -9,3 +9,8 @@
 #include "lendulet/result.h"
 #include "lendulet/shapes.h"
 #include "lendulet/world.h"
+
+// The engine's version, by the rules of semver.org; the program and the CMake package have it from here.
+#define LENDULET_VERSION_MAJOR 0
+#define LENDULET_VERSION_MINOR 1
+#define LENDULET_VERSION_PATCH 0

@@ -86,7 +86,8 @@ private:
     float rounding_ = 0.0f;
 };
 
-// The half space below a plane: solid where dot(normal, p) <= offset. For static bodies only.
+// The half space below a plane: solid where dot(normal, p) <= offset, whatever the normal's length but 0. For static
+// bodies only.
 struct Plane {
     Vec3 normal{0.0f, 1.0f, 0.0f};
     float offset = 0.0f;

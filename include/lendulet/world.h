@@ -140,11 +140,19 @@ public:
     Result<BodyId> add_static_body(const StaticBodyDef& def);
     // Removes the body with its colliders and joints. Errors: stale_id, wrong_world.
     Status remove_body(BodyId id);
+    // Another number of the user's own for a body; snapshots do not hold it. Errors: stale_id, wrong_world.
+    Status set_user_data(BodyId id, uint64_t user_data);
     // Errors: stale_id, wrong_world, bad_joint, no_dynamic_body, non_finite.
     Result<JointId> add_joint(const JointDef& def);
     Status remove_joint(JointId id);
-    Status set_motor(JointId id, Motor motor);                         // of a hinge, slider or distance joint
-    Status set_motor(JointId id, Coordinate coordinate, Motor motor);  // of a six-degree joint
+    // Another motor or spring from the next step on: of a hinge, slider or distance joint, or of one coordinate of a
+    // six-degree joint. A spring whose target is set again and again is a servo. Wakes the joint's bodies.
+    // Errors: stale_id, wrong_world, non_finite, bad_joint (a joint or coordinate without such, a negative force,
+    // stiffness or damping). On an error nothing has changed.
+    Status set_motor(JointId id, Motor motor);
+    Status set_motor(JointId id, Coordinate coordinate, Motor motor);
+    Status set_spring(JointId id, Spring spring);
+    Status set_spring(JointId id, Coordinate coordinate, Spring spring);
     // A joint's frames on its two bodies from one frame in the world (x axis along `axis`).
     Result<JointDef> joint_at(JointType type, BodyId a, BodyId b, Position anchor,
                               Vec3 axis = {1.0f, 0.0f, 0.0f}) const;
@@ -158,7 +166,7 @@ public:
     const RigidBodyRef get(BodyId id) const;
     StaticBodyRef get_static(BodyId id) const;  // any body
     JointState joint(JointId id) const;
-    // The joint as it was defined, with the motor that it has now.
+    // The joint as it was defined, with the motors and springs that it has now.
     JointDef joint_def(JointId id) const;
 
     // Takes memory ahead for worlds of so many bodies, contacts and joints, and touches it: the first steps then need
@@ -180,8 +188,8 @@ public:
 
     // --- snapshots
     // All that a world's future depends on but shapes, masses and settings: poses, momenta, forces, sleep, joints'
-    // motors and impulses, contacts and what the narrow phase keeps of them, gravity, time. Equal states give equal
-    // bytes. About 100 bytes a body and 250 a contact; O(n).
+    // motors, springs and impulses, contacts and what the narrow phase keeps of them, gravity, time. Equal states give
+    // equal bytes. About 100 bytes a body and 250 a contact; O(n).
     std::vector<uint8_t> snapshot() const;
     // Goes back to a snapshot of this world, or of one that was built alike (bodies, joints, settings that results
     // depend on; another number of workers, width or broad phase will do): from there on it computes the same bits.

@@ -325,6 +325,13 @@ Result<BodyId> World::add_static_body(const StaticBodyDef& def) {
     return world.bodies.id(slot);
 }
 
+Status World::set_user_data(BodyId id, uint64_t user_data) {
+    WorldData& world = *data_;
+    if (!world.bodies.alive(id)) return no_such(world.bodies.slots, id.generation, "set_user_data", "body");
+    world.bodies.info[id.index].user_data = user_data;
+    return {};
+}
+
 Status World::remove_body(BodyId id) {
     WorldData& world = *data_;
     if (!world.bodies.alive(id)) return no_such(world.bodies.slots, id.generation, "remove_body", "body");

@@ -32,15 +32,16 @@ Result<SimplexSolver> simplex_from_name(std::string_view name) {
     for (SimplexSolver s : {SimplexSolver::barycentric, SimplexSolver::half_space})
         if (name == name_of(s)) return s;
     return Error{ErrorCode::unknown_name,
-                 "no simplex solver is named '" + std::string(name) + "'; there are barycentric, half-space"};
+                 "there is no simplex solver \"" + std::string(name) + "\"; there are barycentric, half-space"};
 }
 
 Result<Integrator> integrator_from_name(std::string_view name) {
     for (Integrator i :
          {Integrator::momentum, Integrator::explicit_euler, Integrator::symplectic_euler, Integrator::runge_kutta_4})
         if (name == name_of(i)) return i;
-    return Error{ErrorCode::unknown_name, "no integrator is named '" + std::string(name) +
-                                              "'; there are momentum, explicit-euler, symplectic-euler, runge-kutta-4"};
+    return Error{ErrorCode::unknown_name,
+                 "there is no integrator \"" + std::string(name) +
+                     "\"; there are momentum, explicit-euler, symplectic-euler, runge-kutta-4"};
 }
 
 }  // namespace lendulet

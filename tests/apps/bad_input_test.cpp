@@ -53,6 +53,8 @@ TEST(BadInput, CommandsAndOptions) {
     expect_refused({"run", "stack", "--json", "/no/such/directory/x"}, "/no/such/directory/x: cannot be written");
     expect_refused({"run", "stack", "--record", "/no/such/directory/x"}, "/no/such/directory/x: cannot be written");
     expect_refused({"run", "scenes/files/motion.gltf", "--threads", "0"}, "");
+    expect_refused({"bench"}, "broad-phase, scenes and collision");
+    expect_refused({"bench", "everything"}, "\"everything\" is no benchmark; there are broad-phase");
 }
 
 TEST(BadInput, Verify) {
@@ -87,6 +89,7 @@ TEST(BadInput, SceneFiles) {
     expect_refused({"run", "missing.glb", "--quiet"}, "missing.glb: no such file");
     std::filesystem::create_directories(scratch("folder.gltf"));
     expect_refused({"run", scratch("folder.gltf")}, "not a regular file");
+    expect_refused({"run", file_with("model.obj", "v 0 0 0")}, "model.obj: is neither a .gltf, .glb or .json file nor");
     expect_refused({"run", file_with("empty.gltf", "")}, "empty.gltf: is not valid JSON");
     expect_refused({"run", file_with("empty.glb", "")}, "empty.glb: ");
     expect_refused({"run", file_with("short.glb", "glTF\2\0\0\0"), "--json", "-"}, "short.glb: ");

@@ -121,6 +121,22 @@ TEST(Ids, IterationIsInCreationOrder) {
     for (int i = 0; i < world.body_count(); ++i) EXPECT_EQ(world.body(i), expected[static_cast<size_t>(i)]) << i;
 }
 
+TEST(Views, UserDataIsSetAndSeenByQueries) {
+    World world = WorldBuilder{}.build().value();
+    const BodyId ball = world.add_rigid_body({.shape = Sphere{0.5f}, .user_data = 1}).value();
+    const BodyId floor = world.add_static_body({.position = {0.0f, -3.0f, 0.0f}}).value();
+    const uint64_t hash = world.hash();
+    world.set_user_data(ball, ~uint64_t{0}).value();
+    world.set_user_data(floor, 5).value();
+    EXPECT_EQ(world.get(ball).user_data(), ~uint64_t{0});
+    EXPECT_EQ(world.get_static(floor).user_data(), 5u);
+    EXPECT_EQ(world.cast_ray({.origin = {0.0f, 1.0f, 0.0f}}).value().body_user_data, ~uint64_t{0});
+    EXPECT_EQ(world.hash(), hash);
+    world.remove_body(ball).value();
+    EXPECT_EQ(world.set_user_data(ball, 2).error().code, ErrorCode::stale_id);
+    EXPECT_EQ(World(WorldBuilder{}.build().value()).set_user_data(floor, 2).error().code, ErrorCode::wrong_world);
+}
+
 TEST(Views, TellWhatWasGiven) {
     World world = WorldBuilder{}.build().value();
     const Quat turned = rotation_about({0.0f, 1.0f, 0.0f}, 0.5f);
@@ -147,6 +163,8 @@ TEST(Views, TellWhatWasGiven) {
     EXPECT_EQ(world.body_of(body.collider(1)), id);
     EXPECT_LT(length(body.position() - Position{1.0f, 2.0f, 3.0f}), 1e-6f);
     EXPECT_NEAR(absolute(dot(body.orientation(), turned)), 1.0f, 1e-6f);
+    EXPECT_EQ(body.pose().position, body.position());
+    EXPECT_EQ(body.pose().orientation, body.orientation());
     EXPECT_LT(length(body.rotation_matrix().x - rotate(turned, Vec3{1.0f, 0.0f, 0.0f})), 1e-6f);
     // Masses 750 and 523.6 kg: the centre lies between the parts.
     const float ball = 1000.0f * 4.0f / 3.0f * pi * 0.125f;

@@ -172,6 +172,60 @@ TEST(JointApi, MotorIsRefusedByOtherJoints) {
     EXPECT_EQ(p.world.set_motor(ball, {1.0f, 1.0f}).error().code, ErrorCode::bad_joint);
 }
 
+// A servo: the spring's target is set, and a resting arm goes there.
+TEST(JointApi, SpringIsSetAndWakesItsBodies) {
+    World world = WorldBuilder{}.no_gravity().build().value();
+    BodyId post = world.add_static_body({}).value();
+    BodyId wheel = world.add_rigid_body({.shape = Cylinder{0.1f, 0.5f}, .position = {0.0f, 3.0f, 0.0f}}).value();
+    JointId axle =
+        world.add_joint(world.joint_at(JointType::hinge, post, wheel, {0.0f, 3.0f, 0.0f}, {0.0f, 1.0f, 0.0f}).value())
+            .value();
+    for (int i = 0; i < 120; ++i) world.update(dt).value();
+    EXPECT_TRUE(world.get(wheel).asleep());
+    for (float target : {1.2f, -0.7f}) {
+        const Spring spring{.stiffness = 1000.0f, .damping = 200.0f, .target = target};
+        world.set_spring(axle, spring).value();
+        world.update(dt).value();
+        EXPECT_FALSE(world.get(wheel).asleep());
+        for (int i = 0; i < 240; ++i) world.update(dt).value();
+        EXPECT_NEAR(world.joint(axle).position, target, 1e-3f);
+        EXPECT_EQ(world.joint_def(axle).spring.target, target);
+        EXPECT_EQ(world.joint_def(axle).spring.stiffness, 1000.0f);
+    }
+}
+
+// As if the joint had been made with it, whichever way its rows are kept.
+TEST(JointApi, SpringSetLaterIsThatOfTheDefinition) {
+    const Spring spring{.stiffness = 300.0f, .damping = 5.0f, .target = 0.6f, .max_force = 400.0f};
+    for (JointType type : {JointType::hinge, JointType::slider, JointType::distance}) {
+        uint64_t hashes[2];
+        for (bool later : {false, true}) {
+            Pair p;
+            JointDef def = p.world.joint_at(type, p.post, p.rod, {}).value();
+            if (!later) def.spring = spring;
+            JointId joint = p.world.add_joint(def).value();
+            if (later) p.world.set_spring(joint, spring).value();
+            p.run(90);
+            hashes[later] = p.world.hash();
+        }
+        EXPECT_EQ(hashes[0], hashes[1]) << static_cast<int>(type);
+    }
+}
+
+TEST(JointApi, SpringIsRefused) {
+    Pair p;
+    JointId ball = p.world.add_joint(p.world.joint_at(JointType::ball, p.post, p.rod, {}).value()).value();
+    EXPECT_EQ(p.world.set_spring(ball, {1.0f, 1.0f}).error().code, ErrorCode::bad_joint);
+    EXPECT_EQ(p.world.set_spring(ball, Coordinate::x, {1.0f, 1.0f}).error().code, ErrorCode::bad_joint);
+    JointId hinge = p.world.add_joint(p.world.joint_at(JointType::hinge, p.post, p.rod, {}).value()).value();
+    p.world.set_spring(hinge, {3.0f, 1.0f}).value();
+    EXPECT_EQ(p.world.set_spring(hinge, {-1.0f, 1.0f}).error().code, ErrorCode::bad_joint);
+    EXPECT_EQ(p.world.set_spring(hinge, {.stiffness = 1.0f, .target = nan_value}).error().code, ErrorCode::non_finite);
+    EXPECT_EQ(p.world.joint_def(hinge).spring.stiffness, 3.0f);
+    p.world.remove_joint(hinge).value();
+    EXPECT_EQ(p.world.set_spring(hinge, {1.0f, 1.0f}).error().code, ErrorCode::stale_id);
+}
+
 // A kinematic body carries what hangs on it, whichever side of the joint it is.
 TEST(JointApi, KinematicBodyDrivesThroughAJoint) {
     for (bool first : {true, false}) {

@@ -362,6 +362,9 @@ TEST(SixDegrees, RefuseWhatMakesNoSense) {
     EXPECT_EQ(p.world.set_motor(p.joint, Coordinate::swing, {1.0f, 1.0f}).error().code, ErrorCode::bad_joint);
     EXPECT_EQ(p.world.set_motor(p.joint, static_cast<Coordinate>(9), {1.0f, 1.0f}).error().code, ErrorCode::bad_joint);
     EXPECT_EQ(p.world.set_motor(p.joint, Coordinate::x, {nan, 1.0f}).error().code, ErrorCode::non_finite);
+    EXPECT_EQ(p.world.set_spring(p.joint, Spring{1.0f, 1.0f}).error().code, ErrorCode::bad_joint);
+    EXPECT_EQ(p.world.set_spring(p.joint, Coordinate::distance, {1.0f, 1.0f}).error().code, ErrorCode::bad_joint);
+    EXPECT_EQ(p.world.set_spring(p.joint, Coordinate::x, {1.0f, -1.0f}).error().code, ErrorCode::bad_joint);
 }
 
 // Those that go make room for others, whose rows are their own.

@@ -120,6 +120,33 @@ TEST(Snapshot, HoldsGravityForcesMotorsAndOverlaps) {
     EXPECT_EQ(world.hash(), expected);
 }
 
+// Servos: springs whose targets are set again as the world goes.
+TEST(Snapshot, HoldsSprings) {
+    for (JointType type : {JointType::hinge, JointType::slider, JointType::distance, JointType::six_degrees}) {
+        World world = WorldBuilder{}.build().value();
+        BodyId floor = add_floor(world), arm = add_cube(world, 0.0f, 1);
+        JointDef def = world.joint_at(type, floor, arm, {0.0f, 4.0f, 0.0f}, {0.0f, 1.0f, 0.0f}).value();
+        JointId joint = world.add_joint(def).value();
+        auto aim = [&](Spring spring) {
+            if (type == JointType::six_degrees) world.set_spring(joint, Coordinate::x, spring).value();
+            else world.set_spring(joint, spring).value();
+        };
+        aim({.stiffness = 5e4f, .damping = 2e3f, .target = 1.0f});
+        run(world, 20);
+        const std::vector<uint8_t> saved = world.snapshot();
+        run(world, 30);
+        const uint64_t expected = world.hash();
+        world.restore(saved).value();
+        aim({.stiffness = 5e4f, .damping = 2e3f, .target = 0.3f, .max_force = 1e4f, .target_velocity = 0.5f});
+        run(world, 30);
+        EXPECT_NE(world.hash(), expected) << static_cast<int>(type);
+        world.restore(saved).value();
+        EXPECT_EQ(world.snapshot(), saved) << static_cast<int>(type);
+        run(world, 30);
+        EXPECT_EQ(world.hash(), expected) << static_cast<int>(type);
+    }
+}
+
 // Boxes with round edges, whose queries remember a face. Bytes tell of caches that the motion does not show yet.
 TEST(Snapshot, HoldsWhereDistanceQueriesBegin) {
     World world = WorldBuilder{}.build().value();

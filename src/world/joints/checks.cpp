@@ -27,15 +27,6 @@ Status check_limit(const Limit& limit, const std::string& name, float most, cons
     return {};
 }
 
-Status check_spring(const Spring& spring, const char* call) {
-    if (!is_finite(spring.stiffness) || !is_finite(spring.damping) || !is_finite(spring.target) ||
-        !is_finite(spring.target_velocity) || spring.max_force != spring.max_force)
-        return refused_joint(ErrorCode::non_finite, call, "the spring's values must be numbers");
-    if (spring.stiffness < 0.0f || spring.damping < 0.0f || spring.max_force < 0.0f)
-        return bad_joint(call, "the spring's stiffness, damping and force must not be negative");
-    return {};
-}
-
 // A coordinate that is never less than 0.
 Status check_size(const Limit& limit, const std::string& name, const char* call) {
     if (!limit.free() && limit.upper < 0.0f)
@@ -109,6 +100,15 @@ Status check_motor(const Motor& motor, const char* call) {
         return refused_joint(ErrorCode::non_finite, call, "the motor's velocity and force must be numbers");
     if (motor.max_force < 0.0f)
         return bad_joint(call, "the motor's force is " + text(motor.max_force) + ", must not be negative");
+    return {};
+}
+
+Status check_spring(const Spring& spring, const char* call) {
+    if (!is_finite(spring.stiffness) || !is_finite(spring.damping) || !is_finite(spring.target) ||
+        !is_finite(spring.target_velocity) || spring.max_force != spring.max_force)
+        return refused_joint(ErrorCode::non_finite, call, "the spring's values must be numbers");
+    if (spring.stiffness < 0.0f || spring.damping < 0.0f || spring.max_force < 0.0f)
+        return bad_joint(call, "the spring's stiffness, damping and force must not be negative");
     return {};
 }
 

@@ -15,6 +15,7 @@ Status check_bodies(const WorldData& world, BodyId a, BodyId b, const char* call
 // Finite, with a rotation, which is normalised.
 Result<Transform> check_frame(const Transform& frame, const char* name, const char* call);
 Status check_motor(const Motor& motor, const char* call);
+Status check_spring(const Spring& spring, const char* call);
 // The limits, motors and springs that joints of that type read.
 Status check_rows(const JointDef& def, const char* call);
 

@@ -8,10 +8,39 @@ namespace {
 
 constexpr size_t max_name = 255;
 
-void motor_was_set(WorldData& world, const JointInfo& j) {
+void drive_was_set(WorldData& world, const JointInfo& j) {
     world.joints_changed = true;
     wake_body(world, j.body_a);
     wake_body(world, j.body_b);
+}
+
+// The joint, where it is of a type that has one motor and one spring.
+Result<JointInfo*> driven_joint(WorldData& world, JointId id, const char* call) {
+    if (!world.joints.alive(id)) return no_such(world.joints.slots, id.generation, call, "joint");
+    JointInfo& j = world.joints.info[id.index];
+    if (j.type != JointType::hinge && j.type != JointType::slider && j.type != JointType::distance)
+        return refused_joint(ErrorCode::bad_joint, call,
+                             "only hinges, sliders and distance joints have one motor and spring");
+    return &j;
+}
+// Where such a joint's rows are data, the one that is driven; else null.
+JointAxis* driven_axis(WorldData& world, const JointInfo& j) {
+    return j.axes < 0 ? nullptr : &world.joints.axes[static_cast<size_t>(j.axes)].row[driven_row(j.type)];
+}
+
+// A coordinate that a six-degree joint uses.
+Result<JointAxis*> axis_of(WorldData& world, JointId id, Coordinate coordinate, const char* call) {
+    if (!world.joints.alive(id)) return no_such(world.joints.slots, id.generation, call, "joint");
+    const JointInfo& j = world.joints.info[id.index];
+    const int row = static_cast<int>(coordinate);
+    if (j.type != JointType::six_degrees || row < 0 || row >= joint_coordinates)
+        return refused_joint(ErrorCode::bad_joint, call,
+                             "only six-degree joints have motors and springs by coordinate");
+    JointAxesInfo& axes = world.joints.axes[static_cast<size_t>(j.axes)];
+    if ((coordinate == Coordinate::distance && axes.distance_axes == 0) ||
+        (coordinate == Coordinate::swing && axes.swing_axes == 0))
+        return refused_joint(ErrorCode::bad_joint, call, "the joint does not use that coordinate");
+    return &axes.row[row];
 }
 
 // Joints may keep the colliders of their bodies apart.
@@ -69,33 +98,45 @@ Status World::remove_joint(JointId id) {
 
 Status World::set_motor(JointId id, Motor motor) {
     constexpr const char* call = "set_motor";
-    WorldData& world = *data_;
-    if (!world.joints.alive(id)) return no_such(world.joints.slots, id.generation, call, "joint");
-    JointInfo& j = world.joints.info[id.index];
-    if (j.type != JointType::hinge && j.type != JointType::slider && j.type != JointType::distance)
-        return refused_joint(ErrorCode::bad_joint, call, "only hinges, sliders and distance joints have a motor");
+    Result<JointInfo*> driven = driven_joint(*data_, id, call);
+    if (!driven) return driven.error();
     if (Status s = check_motor(motor, call); !s) return s;
+    JointInfo& j = *driven.value();
     j.motor = motor;
-    if (j.axes >= 0) world.joints.axes[static_cast<size_t>(j.axes)].row[driven_row(j.type)].motor = motor;
-    motor_was_set(world, j);
+    if (JointAxis* axis = driven_axis(*data_, j)) axis->motor = motor;
+    drive_was_set(*data_, j);
     return {};
 }
 
 Status World::set_motor(JointId id, Coordinate coordinate, Motor motor) {
     constexpr const char* call = "set_motor";
-    WorldData& world = *data_;
-    if (!world.joints.alive(id)) return no_such(world.joints.slots, id.generation, call, "joint");
-    const JointInfo& j = world.joints.info[id.index];
-    const int row = static_cast<int>(coordinate);
-    if (j.type != JointType::six_degrees || row < 0 || row >= joint_coordinates)
-        return refused_joint(ErrorCode::bad_joint, call, "only six-degree joints have motors by coordinate");
-    JointAxesInfo& axes = world.joints.axes[static_cast<size_t>(j.axes)];
-    if ((coordinate == Coordinate::distance && axes.distance_axes == 0) ||
-        (coordinate == Coordinate::swing && axes.swing_axes == 0))
-        return refused_joint(ErrorCode::bad_joint, call, "the joint does not use that coordinate");
+    Result<JointAxis*> axis = axis_of(*data_, id, coordinate, call);
+    if (!axis) return axis.error();
     if (Status s = check_motor(motor, call); !s) return s;
-    axes.row[row].motor = motor;
-    motor_was_set(world, j);
+    axis.value()->motor = motor;
+    drive_was_set(*data_, data_->joints.info[id.index]);
+    return {};
+}
+
+Status World::set_spring(JointId id, Spring spring) {
+    constexpr const char* call = "set_spring";
+    Result<JointInfo*> driven = driven_joint(*data_, id, call);
+    if (!driven) return driven.error();
+    if (Status s = check_spring(spring, call); !s) return s;
+    JointInfo& j = *driven.value();
+    j.spring = spring;
+    if (JointAxis* axis = driven_axis(*data_, j)) axis->spring = spring;
+    drive_was_set(*data_, j);
+    return {};
+}
+
+Status World::set_spring(JointId id, Coordinate coordinate, Spring spring) {
+    constexpr const char* call = "set_spring";
+    Result<JointAxis*> axis = axis_of(*data_, id, coordinate, call);
+    if (!axis) return axis.error();
+    if (Status s = check_spring(spring, call); !s) return s;
+    axis.value()->spring = spring;
+    drive_was_set(*data_, data_->joints.info[id.index]);
     return {};
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr char magic[8] = {'L', 'E', 'N', 'D', 'S', 'N', 'A', 'P'};
-constexpr uint32_t version = 5;
+constexpr uint32_t version = 6;
 constexpr size_t header_bytes = sizeof magic + 2 * sizeof(uint32_t), checksum_bytes = sizeof(uint64_t);
 
 uint64_t checksum(std::span<const uint8_t> bytes) {
@@ -114,14 +114,20 @@ void body(Bytes& bytes, SavedBody& b) {
 }
 
 template <class Bytes>
+void drive(Bytes& bytes, Motor& m, Spring& s) {
+    bytes(m.target_velocity, m.max_force);
+    bytes(s.stiffness, s.damping, s.target, s.max_force, s.target_velocity);
+}
+
+template <class Bytes>
 void joint(Bytes& bytes, SavedJoint& j) {
     JointImpulses& i = j.impulses;
-    bytes(j.motor.target_velocity, j.motor.max_force);
+    drive(bytes, j.motor, j.spring);
     bytes(i.linear, i.angular, i.limit, i.motor, i.spring, i.flags);
     bytes(i.impulse, i.angular_impulse, i.h);
     flags(bytes, j.has_axes);
     if (!j.has_axes) return;
-    for (JointAxis& axis : j.axes.row) bytes(axis.motor.target_velocity, axis.motor.max_force);
+    for (JointAxis& axis : j.axes.row) drive(bytes, axis.motor, axis.spring);
     bytes(j.axes.limit, j.axes.motor, j.axes.spring);
 }
 

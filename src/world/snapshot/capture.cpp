@@ -141,8 +141,9 @@ void capture(const WorldData& world, SavedState& state) {
     state.steps = world.steps;
     for (uint32_t slot : world.bodies.slots.order()) state.bodies.push_back(capture_body(world, slot));
     for (uint32_t slot : world.joints.slots.order()) {
-        const bool has_axes = world.joints.info[slot].axes >= 0;
-        state.joints.push_back({world.joints.info[slot].motor, joint_impulses(world, slot), has_axes,
+        const JointInfo& j = world.joints.info[slot];
+        const bool has_axes = j.axes >= 0;
+        state.joints.push_back({j.motor, j.spring, joint_impulses(world, slot), has_axes,
                                 has_axes ? joint_axes_impulses(world, slot) : JointAxesInfo{}});
     }
     state.boxes.append(world.moving_boxes.data(), world.moving_boxes.size());

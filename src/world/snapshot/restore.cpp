@@ -69,7 +69,7 @@ Status check_bodies(const WorldData& world, const SavedState& state) {
     return {};
 }
 
-// Joints whose rows are data have motors and impulses for each.
+// Joints whose rows are data have motors, springs and impulses for each.
 Status check_joints(const WorldData& world, const SavedState& state) {
     for (uint32_t i = 0; i < state.joint_slots.count; ++i) {
         const JointInfo& j = world.joints.info[world.joints.slots.in_order(static_cast<int>(i))];
@@ -181,11 +181,13 @@ void apply_joints(WorldData& world, const SavedState& state) {
     for (uint32_t slot : world.joints.slots.order()) {
         const SavedJoint& joint = state.joints[next++];
         world.joints.info[slot].motor = joint.motor;
+        world.joints.info[slot].spring = joint.spring;
         world.joints.impulses[slot] = joint.impulses;
         if (world.joints.info[slot].axes < 0) continue;
         JointAxesInfo& axes = world.joints.axes[static_cast<size_t>(world.joints.info[slot].axes)];
         for (int i = 0; i < joint_coordinates; ++i) {
             axes.row[i].motor = joint.axes.row[i].motor;
+            axes.row[i].spring = joint.axes.row[i].spring;
             axes.limit[i] = joint.axes.limit[i];
             axes.motor[i] = joint.axes.motor[i];
             axes.spring[i] = joint.axes.spring[i];

@@ -35,9 +35,10 @@ struct SavedBody {
 
 struct SavedJoint {
     Motor motor;
+    Spring spring;
     JointImpulses impulses;
     bool has_axes = false;
-    JointAxesInfo axes{};  // of joints whose rows are data: their motors and impulses
+    JointAxesInfo axes{};  // of joints whose rows are data: their motors, springs and impulses
 };
 
 struct SavedContact {
