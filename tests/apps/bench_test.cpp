@@ -33,7 +33,7 @@ TEST(Bench, BroadPhaseWritesTableCsvAndChart) {
 }
 
 TEST(Bench, BadOptionsAreOneSentence) {
-    expect_bench_refuses({}, "subcommand");
+    expect_bench_refuses({}, "name of a benchmark");
     expect_bench_refuses({"everything"}, "");
     for (const char* bad : {"0", "-5", "x", "", "10,", ",10", "10,,20", "1e3", "10000001", "99999999999999999999"})
         expect_bench_refuses({"broad-phase", std::string("--sizes=") + bad}, "--sizes");
