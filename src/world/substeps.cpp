@@ -329,7 +329,7 @@ int part_for(WorldData& world, uint32_t slot, float dt) {
 
 bool is_crowded(const WorldData& world, const TouchingBodies& bodies) {
     constexpr int crowd = 64, elastic_crowd = 4096;  // contacts
-    uint32_t slot = bodies.b;
+    uint32_t slot = bodies.b;                        // several threads ask: the way to the root stays as it is
     while (world.load_parent[slot] != slot) slot = world.load_parent[slot];
     return bodies.bounces && world.island_loads[slot].contacts > (bodies.elastic ? elastic_crowd : crowd);
 }

@@ -85,13 +85,15 @@ static_assert(sizeof(IslandLoad) == 128);
 // those who go through all contacts one by one want to know of its record: see choose_substeps().
 struct TouchingBodies {
     uint32_t a, b;
-    float impulse;  // along the normal, of the last substep, N s
+    float impulse = 0.0f;  // along the normal, of the last substep, N s
     bool fixed_a;
-    bool a_above;  // gravity presses A on B
-    bool bounces, elastic, swift;
-    bool held;     // all points carried something in the last step
-    bool passes;   // see contact_passes; not where forces may move the bodies otherwise
-    uint8_t kind;  // see contact_kind()
+    bool a_above = false;  // gravity presses A on B
+    bool bounces = false;  // with a restitution, or is swift
+    bool elastic = false;  // loses next to no energy by that
+    bool swift = false;    // see contact_swift
+    bool held = false;     // all points carried something in the last step
+    bool passes = false;   // see contact_passes; not where forces may move the bodies otherwise
+    uint8_t kind = 0;      // see contact_kind()
 };
 
 // A new contact on which `upper` rests; `lower` is no_slot where that is static. See first_loads.cpp.
@@ -209,9 +211,9 @@ struct WorldData {
     Array<uint32_t> loaded;          // slots of those of this step: bodies in contact and those of joint groups
     Array<FirstLoad> first_loads;    // of this step
     SolverPart parts[solver_parts];
-    BodyRange alone{0, 0};  // bodies behind them that nothing acts on but gravity: they take the step at once
-    int hard_bodies = 0;    // of classes above the setting's
-    int flowing_bodies = 0;
+    BodyRange alone{0, 0};   // bodies behind them that nothing acts on but gravity: they take the step at once
+    int hard_bodies = 0;     // of classes above the setting's
+    int flowing_bodies = 0;  // of islands that flow
     bool has_packed_kinematic = false;  // some packed bodies are moved by hand
     ScheduleRoom schedule_room;
     size_t expected = 0;          // colliders for whose contacts there is room, see expect_contacts()

@@ -149,15 +149,25 @@ TEST(JointApi, JointCarriesTheWeight) {
     EXPECT_NEAR(s.torque.z, 9.81f * 0.5f, 0.01f);
 }
 
-TEST(JointApi, MotorIsSetAndWakesItsBodies) {
+// A wheel on a hinge that has gone to sleep.
+struct SleepingWheel {
     World world = WorldBuilder{}.no_gravity().build().value();
-    BodyId post = world.add_static_body({}).value();
     BodyId wheel = world.add_rigid_body({.shape = Cylinder{0.1f, 0.5f}, .position = {0.0f, 3.0f, 0.0f}}).value();
-    JointId axle =
-        world.add_joint(world.joint_at(JointType::hinge, post, wheel, {0.0f, 3.0f, 0.0f}, {0.0f, 1.0f, 0.0f}).value())
-            .value();
-    for (int i = 0; i < 120; ++i) world.update(dt).value();
-    EXPECT_TRUE(world.get(wheel).asleep());
+    JointId axle = world
+                       .add_joint(world
+                                      .joint_at(JointType::hinge, world.add_static_body({}).value(), wheel,
+                                                {0.0f, 3.0f, 0.0f}, {0.0f, 1.0f, 0.0f})
+                                      .value())
+                       .value();
+    SleepingWheel() {
+        for (int i = 0; i < 120; ++i) world.update(dt).value();
+        EXPECT_TRUE(world.get(wheel).asleep());
+    }
+};
+
+TEST(JointApi, MotorIsSetAndWakesItsBodies) {
+    SleepingWheel w;
+    auto& [world, wheel, axle] = w;
     world.set_motor(axle, {5.0f, 1e4f}).value();
     for (int i = 0; i < 10; ++i) world.update(dt).value();
     EXPECT_FALSE(world.get(wheel).asleep());
@@ -174,14 +184,8 @@ TEST(JointApi, MotorIsRefusedByOtherJoints) {
 
 // A servo: the spring's target is set, and a resting arm goes there.
 TEST(JointApi, SpringIsSetAndWakesItsBodies) {
-    World world = WorldBuilder{}.no_gravity().build().value();
-    BodyId post = world.add_static_body({}).value();
-    BodyId wheel = world.add_rigid_body({.shape = Cylinder{0.1f, 0.5f}, .position = {0.0f, 3.0f, 0.0f}}).value();
-    JointId axle =
-        world.add_joint(world.joint_at(JointType::hinge, post, wheel, {0.0f, 3.0f, 0.0f}, {0.0f, 1.0f, 0.0f}).value())
-            .value();
-    for (int i = 0; i < 120; ++i) world.update(dt).value();
-    EXPECT_TRUE(world.get(wheel).asleep());
+    SleepingWheel w;
+    auto& [world, wheel, axle] = w;
     for (float target : {1.2f, -0.7f}) {
         const Spring spring{.stiffness = 1000.0f, .damping = 200.0f, .target = target};
         world.set_spring(axle, spring).value();

@@ -377,7 +377,7 @@ void list_contacts(WorldData& world) {
         for (uint32_t record = p.first_record; record < p.first_record + p.count; ++record, ++count) {
             place[record] = count;
             touching[count] = record;
-            bodies[count] = {p.body_a, p.body_b, 0.0f, p.fixed_a, false, false, false, false, false, false, 0};
+            bodies[count] = {.a = p.body_a, .b = p.body_b, .fixed_a = p.fixed_a};
         }
         if (p.fixed_a) world.seams.add(listed[i].pair, p);
         if (p.hit) add_overlap(world, p);
