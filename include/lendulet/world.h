@@ -42,7 +42,9 @@ struct TaskHook {
 // Every setting of a world; WorldBuilder fills it in.
 struct WorldConfig {
     Vec3 gravity{0.0f, -9.81f, 0.0f};  // m/s^2
-    int solver_steps = 8;  // substeps per step, 1 .. 64; small islands under heavy load take up to 16 times as many
+    // Substeps per step, 1 .. 64. Small islands under heavy load take up to 16 times as many, large ones in motion half,
+    // where that is a whole number of at least 4 (docs/solver.md).
+    int solver_steps = 8;
     float rigid_separation_speed = 3.0f;   // m/s: fastest that overlap between two rigid bodies is undone
     float static_separation_speed = 3.0f;  // m/s: the same against static and kinematic bodies
     float friction = 0.5f;                 // default static and dynamic coefficient
@@ -62,7 +64,7 @@ struct WorldConfig {
 struct ContactPoint {
     Position position;     // half way between the two surfaces, m
     float separation;      // m, negative = overlap
-    float normal_impulse;  // of the last substep, N s
+    float normal_impulse;  // of the last substep, as one of dt / solver_steps, N s
 };
 
 // A contact: up to four points with one normal. None at a seam of a floor that is made up of several pieces, where
@@ -71,7 +73,7 @@ struct Contact {
     BodyId body_a, body_b;
     ColliderId collider_a, collider_b;
     Vec3 normal;            // unit, from A to B
-    Vec3 friction_impulse;  // on B, of the last substep, N s
+    Vec3 friction_impulse;  // on B, as ContactPoint::normal_impulse, N s
     int point_count;
     ContactPoint points[4];
     int32_t triangle;  // number of the mesh's or height field's triangle, -1 where none is involved
