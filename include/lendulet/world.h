@@ -42,8 +42,8 @@ struct TaskHook {
 // Every setting of a world; WorldBuilder fills it in.
 struct WorldConfig {
     Vec3 gravity{0.0f, -9.81f, 0.0f};  // m/s^2
-    // Substeps per step, 1 .. 64. Small islands under heavy load take up to 16 times as many, large ones in motion half,
-    // where that is a whole number of at least 4 (docs/solver.md).
+    // Substeps per step, 1 .. 64. Small islands under heavy load take up to 16 times as many, large ones in motion
+    // half, where that is a whole number of at least 4 (docs/solver.md).
     int solver_steps = 8;
     float rigid_separation_speed = 3.0f;   // m/s: fastest that overlap between two rigid bodies is undone
     float static_separation_speed = 3.0f;  // m/s: the same against static and kinematic bodies
