@@ -64,7 +64,7 @@ struct alignas(64) ContactRow {
     F start_approach;  // relative normal velocity of the centre at the start of the step, with these arms; by relax
     F shift;           // the separations' change since the start of the step, at the centre; by relax
     F push_speed;      // fastest that overlap is undone
-    F bounce_speed;    // -1, or hugely negative where e = 0: times a speed, the approach that only impacts handle
+    F bounce_speed;    // times SubstepConstants::bounce_speed: the approach, negative, from which on impacts handle it
     F follow;          // share of the arms' motion that A's arm makes
     Vec3T<F> overdue;  // angular impulse that the held impulses lack since the bodies moved, unless they rest; by relax
     PatchPoint<F, P> p[P];
@@ -324,10 +324,9 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     const F zero = splat<F>(0.0f);
     int live = group.count - first < W ? group.count - first : W;
     RecordQuads<W> record{floats_of(records), {}};
-    F sharp = zero;             // 1 where corners of one body meet a face of the other
-    F balls = zero;             // and where two balls meet
-    F sparse = splat<F>(1.0f);  // 0 in a crowd: blows that are not followed are met by rows
-    F swift = zero;             // and where impacts are handled whatever the restitution
+    F sharp = zero;  // 1 where corners of one body meet a face of the other
+    F balls = zero;  // and where two balls meet
+    c.bounce_speed = splat<F>(-1e30f);
     int32_t body_a[W], body_b[W];
     for (int l = 0; l < W; ++l) {
         int32_t i = static_cast<int32_t>(group.order[first + (l < live ? l : 0)]);
@@ -337,8 +336,9 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
         const uint32_t flags = records[i].flags;
         if (!group.rolling && (flags & contact_sharp)) set_lane(sharp, l, 1.0f);
         if (flags & contact_balls) set_lane(balls, l, 1.0f);
-        if (flags & contact_swift) set_lane(swift, l, 1.0f);
-        if (flags & contact_crowded) set_lane(sparse, l, 0.0f);
+        // In a crowd blows that are not followed are met by rows.
+        const bool followed = records[i].restitution > 0.0f && (flags & contact_crowded) == 0;
+        if (followed || (flags & contact_swift)) set_lane(c.bounce_speed, l, -slowest_bounce(records[i]));
         c.a[l] = 8 * body_a[l];
         c.b[l] = 8 * body_b[l];
     }
@@ -349,7 +349,6 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     c.static_friction = m.head[3];
     c.dynamic_friction = m.friction[7];
     c.radius_a = m.tail[0], c.radius_b = m.tail[1], c.follow = m.tail[2];
-    c.bounce_speed = select(maximum(sparse * m.tail[3], swift) > zero, splat<F>(-1.0f), splat<F>(-1e30f));
     c.push_speed = m.tail[7];
     sharp = select(absolute(c.follow - splat<F>(0.5f)) > splat<F>(0.25f), sharp, zero);
     sharp = select(maximum(c.radius_a, c.radius_b) > zero, zero, sharp);

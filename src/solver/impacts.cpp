@@ -11,10 +11,6 @@ namespace {
 #include "solver/turn.inl"
 
 constexpr int max_sweeps = 8, crowd_sweeps = 2;
-// Points closer than this count as touching already: positions a metre from the body's centre resolve 1e-7 m.
-constexpr float touching = 1e-6f;
-// What rounding may add to a distance, in parts of those that it is the sum of.
-constexpr float rounding_share = 1e-5f;
 
 Vec3 load(const float* p) { return {p[0], p[1], p[2]}; }
 void add(float* p, Vec3 v) { p[0] += v.x, p[1] += v.y, p[2] += v.z; }
@@ -242,12 +238,10 @@ Impact impact_of(float gap, float approach, float acceleration) {
     const float discriminant = approach * approach - 2.0f * acceleration * gap;
     if (!(discriminant > 0.0f)) return {};
     const float speed = square_root(discriminant);
-    if (!(gap > touching)) return {0.0f, approach < 0.0f ? speed : 0.0f};
+    if (!(gap > touching_gap)) return {0.0f, approach < 0.0f ? speed : 0.0f};
     const float denominator = speed - approach;
     return denominator > 0.0f ? Impact{2.0f * gap / denominator, speed} : Impact{};
 }
-
-bool turns_with_face(const ContactRecord& r) { return (r.flags & contact_sharp) != 0 && r.follow != 0.5f; }
 
 // When two balls whose centres are `way` apart and move by `v` against each other are `radii` apart, or nearest, within
 // [0, h], without acceleration.
@@ -263,6 +257,7 @@ float time_to_meet(Vec3 way, Vec3 v, float radii, float h) {
 // more.
 bool bounce_point(SolverBodies& bodies, Side& a, Side& b, const ContactRecord& r, const ContactPointRecord& point,
                   float tangential_restitution, const SubstepConstants& k, int sweep) {
+    const float slowest = slowest_bounce(r) * k.bounce_speed;
     const Vec3 n0 = load(r.normal), ra0 = load(point.position), offset = load(r.arm_offset);
     const float half_gap = 0.5f * point.separation;
     // Core points turn with their bodies, swept surfaces do not.
@@ -282,7 +277,7 @@ bool bounce_point(SolverBodies& bodies, Side& a, Side& b, const ContactRecord& r
         gap = maximum(dot(n, way) - radii, 0.0f);
     }
     const Impact first = impact_of(gap, dot(v, n), dot(b.core_acceleration() - a.core_acceleration(), n));
-    if (first.time > k.h || !(first.speed >= k.bounce_speed)) return false;
+    if (first.time > k.h || !(first.speed >= slowest)) return false;
 
     float time = first.time;
     Meeting m;
@@ -301,12 +296,12 @@ bool bounce_point(SolverBodies& bodies, Side& a, Side& b, const ContactRecord& r
         // What turns follows no parabola: twice more by Newton's rule.
         const float off = dot(from_a, n), approach = dot(m.slip(), n);
         const bool turning = time > 0.0f && (a.turns() || b.turns());
-        if (!(turning || balls) || times == 2 || !(absolute(off) > touching) || !(approach < 0.0f)) break;
+        if (!(turning || balls) || times == 2 || !(absolute(off) > touching_gap) || !(approach < 0.0f)) break;
         time = maximum(time - off / approach, 0.0f);
         if (time > k.h) return false;
     }
     const float speed = -dot(m.slip(), n);
-    if (!(speed >= k.bounce_speed)) return false;
+    if (!(speed >= slowest)) return false;
 
     const Vec3 impulse = impact_impulse(m, r, n, speed, tangential_restitution);
     a.apply(m.a, -impulse, time, k.first);
@@ -330,75 +325,9 @@ bool bounce_points(SolverBodies& bodies, const ContactRecord& r, bool fresh, flo
     return met;
 }
 
-// Whether a contact may meet faster than bounces do within the substep, by bounds that hold for all its points: how far
-// these have turned with their bodies, and how fast and how much faster they can become.
-bool may_meet(const SolverBodies& bodies, const BouncingContact& c, const SubstepConstants& k) {
-    const auto a = static_cast<size_t>(c.a), b = static_cast<size_t>(c.b);
-    const BodyState &sa = bodies.state[a], &sb = bodies.state[b];
-    const BodyStart &ta = bodies.start[a], &tb = bodies.start[b];
-    const Vec3 v = (load(tb.v) + load(sb.v)) - (load(ta.v) + load(sa.v)), n = load(c.normal);
-    const Vec3 moved = load(sb.dp) - load(sa.dp);
-    float speed = 0.0f, pull = c.pull, turned_a = 0.0f, turned_b = 0.0f;
-    if (c.reach_a + c.reach_b > 0.0f) {
-        const float wa2 = length_squared(load(ta.w) + load(sa.w)), wb2 = length_squared(load(tb.w) + load(sb.w));
-        speed = square_root(wa2) * c.reach_a + square_root(wb2) * c.reach_b;
-        pull += c.pull_a * wa2 + c.pull_b * wb2;
-        turned_a = 2.0f * length(load(sa.dq)), turned_b = 2.0f * length(load(sb.dq));
-    }
-    const float swing = turned_a * c.reach_a + turned_b * c.reach_b;
-    const float unsure = touching + rounding_share * (length(moved) + c.reach_a + c.reach_b);
-    const float faster = k.h * pull;
-    if (c.radii > 0.0f) {
-        const Vec3 way = n + moved, nearest = way + time_to_meet(way, v, c.radii, k.h) * v;
-        return length(nearest) - c.radii - swing - unsure <= k.h * (speed + faster) &&
-               length(v) + speed + faster >= k.bounce_speed;
-    }
-    const float leaned = c.face_a * turned_a + c.face_b * turned_b;
-    const float approach = (leaned * length(v) - dot(n, v)) + (speed + faster);
-    const float gap = (c.gap + dot(n, moved)) - swing - leaned * (length(moved) + swing + c.span) - unsure;
-    return approach >= k.bounce_speed && gap <= k.h * approach;
-}
-
 int larger(int a, int b) { return a > b ? a : b; }
 
 }  // namespace
-
-void prepare_bouncing(const SolverBodies& bodies, const ContactRecord* records, BouncingContact& c) {
-    const ContactRecord& r = records[c.record];
-    c.a = r.body_a, c.b = r.body_b;
-    const Vec3 n = load(r.normal), offset = load(r.arm_offset);
-    const bool on_face = turns_with_face(r), balls = (r.flags & contact_balls) != 0;
-    c.gap = far_separation;
-    c.span = c.reach_a = c.reach_b = 0.0f;
-    for (int j = 0; j < r.point_count; ++j) {
-        const Vec3 ra = load(r.points[j].position);
-        const float s = r.points[j].separation, half_gap = 0.5f * s;
-        c.gap = minimum(c.gap, s);
-        c.span = maximum(c.span, absolute(s));
-        c.reach_a = maximum(c.reach_a, length(ra - (half_gap + r.radius_a) * n));
-        c.reach_b = maximum(c.reach_b, length(ra - offset + (half_gap + r.radius_b) * n));
-    }
-    c.radii = balls ? r.radius_a + r.radius_b : 0.0f;
-    const Vec3 way = balls ? (c.radii + c.gap) * n : n;
-    if (balls) {  // of one about whose centre its body turns no point moves, rounding aside
-        if (c.reach_a < 1e-5f * c.radii) c.reach_a = 0.0f;
-        if (c.reach_b < 1e-5f * c.radii) c.reach_b = 0.0f;
-    }
-    for (int i = 0; i < 3; ++i) c.normal[i] = component(way, i);
-    c.face_a = on_face && r.follow > 0.5f ? 1.0f : 0.0f;
-    c.face_b = on_face && r.follow <= 0.5f ? 1.0f : 0.0f;
-    c.pull = 0.0f;
-    for (int side = 0; side < 2; ++side) {
-        const auto body = static_cast<size_t>(side == 0 ? c.a : c.b);
-        if (body < reserved_bodies) continue;  // it never turns, and its block is never begun
-        const BodyBlock& block = bodies.blocks[body / block_bodies];
-        const size_t at = body % block_bodies;
-        const Vec3 push{block.acceleration[0][at], block.acceleration[1][at], block.acceleration[2][at]};
-        if (bodies.state[body].inverse_mass > 0.0f) c.pull += length(push);
-        (side == 0 ? c.pull_a : c.pull_b) =
-            2.0f * (side == 0 ? c.reach_a : c.reach_b) * maximum(block.anisotropy[at], 1.0f);
-    }
-}
 
 void mark_disturbed(const SolverBodies& bodies, BodyRange range, uint8_t* disturbed) {
     for (int i = range.begin; i < range.end; ++i) {
@@ -436,33 +365,36 @@ void follow_passing(const SolverBodies& bodies, ContactRecord& r) {
     }
 }
 
-bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, BouncingList bouncing,
+bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, const ImpactList& list,
                      const SubstepConstants& k, int substep) {
     const int first_sweep = 1 + max_sweeps * substep;
     bool any = false;
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         bool bounced = false;
         const int number = first_sweep + sweep;
-        for (int i = 0; i < bouncing.count; ++i) {
-            const ImpactEnds& ends = bouncing.ends[i];
-            const auto a = static_cast<size_t>(ends.a), b = static_cast<size_t>(ends.b);
-            if (ends.passes && !(bouncing.disturbed[a] | bouncing.disturbed[b])) continue;
+        for (int i = 0; i < list.count; ++i) {
+            const uint32_t meets = sweep == 0 ? list.blocks[i / meeting_lanes].meets >> (i % meeting_lanes) : 0;
+            // Until somebody is struck nothing comes of those that do not meet.
+            if (sweep == 0 && !bounced && (meets & 1) == 0) {
+                i += meets == 0 ? meeting_lanes - 1 - i % meeting_lanes : 0;
+                continue;
+            }
+            const ImpactContact& c = list.contacts[i];
+            const auto a = static_cast<size_t>(c.a), b = static_cast<size_t>(c.b);
             // Nothing has changed where nobody was struck in the last sweep or in this one.
-            if (sweep >= crowd_sweeps && ends.crowded) continue;
             const int struck = larger(bodies.start[a].struck, bodies.start[b].struck);
-            if (sweep > 0 && struck < number - 1) continue;
+            if ((meets & 1) == 0 && struck < larger(first_sweep, number - 1)) continue;
+            if (c.passes && !(list.disturbed[a] | list.disturbed[b])) continue;
+            if (sweep >= crowd_sweeps && c.crowded) continue;
             // What carries a load has met already: its bodies move against each other as far as the solver has not
             // found yet who carries whom, until a blow comes to one of them.
             const bool still = struck < first_sweep;
-            if (still && ends.held) continue;
-            BouncingContact& c = bouncing.list[i];
-            if (c.a < 0) prepare_bouncing(bodies, records, c);
-            if (!may_meet(bodies, c, k)) continue;
+            if (still && c.held) continue;
             const ContactRecord& r = records[c.record];
-            const float back = bouncing.extras ? bouncing.extras[c.record].tangential_restitution : 0.0f;
+            const float back = list.extras ? list.extras[c.record].tangential_restitution : 0.0f;
             const bool met = bounce_points(bodies, r, still, back, k, number);
             bounced |= met;
-            if (met && bouncing.disturbed) bouncing.disturbed[a] = bouncing.disturbed[b] = 1;
+            if (met && list.disturbed) list.disturbed[a] = list.disturbed[b] = 1;
         }
         any |= bounced;
         if (!bounced) break;

@@ -8,6 +8,7 @@
 
 #include "solver/bodies.h"
 #include "solver/contact.h"
+#include "solver/meetings.h"
 
 namespace lendulet {
 
@@ -60,6 +61,11 @@ struct SolverKernels {
     void (*kick)(SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*drift)(SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*settle)(SolverBodies&, int begin, int end);
+
+    // Fills in the block of contacts [first, first + meeting_lanes) of `count`; and tells which of them may meet.
+    void (*prepare_meetings)(MeetingBlock&, const SolverBodies&, const ContactRecord*, const ImpactContact*, int first,
+                             int count);
+    void (*find_meetings)(MeetingBlock&, const SolverBodies&, const SubstepConstants&);
 };
 
 inline int row_class(int points) { return points > 2 ? 2 : points - 1; }

@@ -24,6 +24,8 @@ namespace {
 
 #include "solver/body_rows.inl"
 
+#include "solver/meetings.inl"
+
 template <int W>
 void prepare_group(const ContactGroup& g, const ContactRecord* records, const SolverBodies& bodies, int begin,
                    int end) {
@@ -72,7 +74,9 @@ constexpr SolverKernels make_kernels() {
             begin_bodies<W>,
             kick_bodies<W>,
             drift_bodies<W>,
-            settle_bodies<W>};
+            settle_bodies<W>,
+            prepare_meetings<W>,
+            find_meetings<W>};
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "solver/solver.h"
 
+#include <algorithm>
+
 #include "solver/impacts.h"
 
 namespace lendulet {
@@ -111,14 +113,13 @@ size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const 
                         ContactCount count, const ContactCut& cut, ContactExtra* extras) {
     extras_ = extras;
     schedule_.build(sorter, ends, extras, list, count.rows, bodies, cut, kernels_, scalar_);
-    bouncing_.clear();
-    impact_ends_.clear();
+    impacts_.clear();
     for (int i = 0; i < count.all; ++i) {
         // In a crowd what carries a load goes on by rows.
         if (!ends[i].bounces || (ends[i].crowded && !ends[i].idle && !ends[i].passes)) continue;
-        bouncing_.push_back(BouncingContact(list[i]));
-        impact_ends_.push_back({ends[i].a, ends[i].b, ends[i].passes, ends[i].held, ends[i].crowded});
+        impacts_.push_back({list[i], ends[i].a, ends[i].b, ends[i].passes, ends[i].held, ends[i].crowded});
     }
+    meetings_.resize_unset((impacts_.size() + meeting_lanes - 1) / meeting_lanes);
     passing_ = count.all - count.rows;
     return schedule_.row_bytes;
 }
@@ -137,6 +138,28 @@ void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joi
     joints_.prepare(tasks, bodies, joints, contacts, reuse);
 }
 
+void Solver::find_meetings(TaskPool& tasks, const SolverBodies& bodies, const ContactRecord* records,
+                           const SubstepConstants& k) {
+    const int passing_from = impacts_.count() - passing_;
+    auto is_asked = [&](const ImpactContact& c) {
+        return !c.passes || disturbed_[static_cast<size_t>(c.a)] || disturbed_[static_cast<size_t>(c.b)];
+    };
+    tasks.for_each(meetings_.count(), contacts_per_part / meeting_lanes, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) {
+            MeetingBlock& block = meetings_[static_cast<size_t>(i)];
+            const int first = i * meeting_lanes;
+            const ImpactContact* c = impacts_.data() + first;
+            block.meets = 0;
+            if (first >= passing_from &&
+                std::none_of(c, c + std::min(meeting_lanes, impacts_.count() - first), is_asked))
+                continue;
+            if (!block.ready)
+                kernels_.prepare_meetings(block, bodies, records, impacts_.data(), first, impacts_.count());
+            kernels_.find_meetings(block, bodies, k);
+        }
+    });
+}
+
 // In every pass what lies between tiles comes before what lies within them; so contacts with what is not moved, which
 // are the last of their tile, come last of all. A tile's relax pass therefore stands before the next substep's kick,
 // and its solve before the drift, each with no barrier between.
@@ -148,10 +171,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
     SubstepConstants k = substep_constants(settings);
     k.joints = !joints_.empty();
     for_each_tile(tasks, range, [&](int, BodyRange r) { kernels_.begin_step(bodies, r.begin, r.end); });
-    tasks.for_each(bouncing_.count(), contacts_per_part, [&](int begin, int end, int) {
-        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i)
-            if (!impact_ends_[i].passes) prepare_bouncing(bodies, records, bouncing_[i]);
-    });
+    for (MeetingBlock& block : meetings_) block.ready = false;
     if (passing_ > 0) disturbed_.assign(static_cast<size_t>(bodies.count), 0);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const SubstepConstants before = k;
@@ -162,13 +182,14 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
         k.end_scale = settings.substeps > 1 ? 0.5f : 1.0f;
         // Impacts look at all bodies at once, which the relax pass must have left.
         bool relaxed = k.first;
-        if (!bouncing_.empty()) {
+        if (!impacts_.empty()) {
             if (!relaxed)
                 for_each_tile(tasks, range, [&](int tile, BodyRange) { pass_tile(tile, bodies, before, relax); });
             relaxed = true;
             if (passing_ > 0 && !k.first) mark_disturbed(bodies, range, disturbed_.data());
-            const BouncingList list{bouncing_.data(), impact_ends_.data(), bouncing_.count(), extras_,
-                                    passing_ > 0 ? disturbed_.data() : nullptr};
+            find_meetings(tasks, bodies, records, k);
+            const ImpactList list{impacts_.data(), impacts_.count(), meetings_.data(), extras_,
+                                  passing_ > 0 ? disturbed_.data() : nullptr};
             k.moved = resolve_impacts(bodies, records, list, k, substep);
         }
         for_each_tile(tasks, range, [&](int tile, BodyRange r) {
@@ -210,10 +231,10 @@ void Solver::store(TaskPool& tasks, const SolverBodies& bodies, ContactRecord* r
     for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
         kernels.store(g, records, begin, end);
     });
-    const int first = bouncing_.count() - passing_;
+    const int first = impacts_.count() - passing_;
     tasks.for_each(passing_, contacts_per_part, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i)
-            follow_passing(bodies, records[bouncing_[static_cast<size_t>(first + i)].record]);
+            follow_passing(bodies, records[impacts_[static_cast<size_t>(first + i)].record]);
     });
 }
 

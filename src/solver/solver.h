@@ -46,8 +46,8 @@ class Solver {
 public:
     Solver(const Memory* memory, int width)
         : schedule_(memory),
-          bouncing_(memory),
-          impact_ends_(memory),
+          impacts_(memory),
+          meetings_(memory),
           disturbed_(memory),
           joints_(memory, width),
           kernels_(solver_kernels(width)),
@@ -65,8 +65,9 @@ public:
     // So that contacts of `other` may become this one's without asking for memory; before schedule().
     void make_room(const Solver& other) {
         schedule_.make_room(other.schedule_);
-        bouncing_.reserve(bouncing_.size() + other.bouncing_.size());
-        impact_ends_.reserve(bouncing_.size() + other.bouncing_.size());
+        const size_t impacts = impacts_.size() + other.impacts_.size();
+        impacts_.reserve(impacts);
+        meetings_.reserve(impacts / meeting_lanes + 1);
     }
     // Takes memory for so many entries of bodies, contacts, and joints; before schedule().
     void make_ready(size_t bodies, size_t contacts, size_t joints) {
@@ -123,10 +124,14 @@ private:
     void pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
 
     ColourSchedule schedule_;
-    Array<BouncingContact> bouncing_;
-    Array<ImpactEnds> impact_ends_;  // of these
-    int passing_ = 0;                // how many of these pass: the last
-    Array<uint8_t> disturbed_;       // by body, see BouncingList
+    // Which of `impacts_` may meet in this substep; prepares what of it is to be asked.
+    void find_meetings(TaskPool& tasks, const SolverBodies& bodies, const ContactRecord* records,
+                       const SubstepConstants& k);
+
+    Array<ImpactContact> impacts_;
+    Array<MeetingBlock> meetings_;  // of these
+    int passing_ = 0;               // how many of these pass: the last
+    Array<uint8_t> disturbed_;      // by body, see ImpactList
     const ContactExtra* extras_ = nullptr;
     JointSolver joints_;
     const SolverKernels& kernels_;
