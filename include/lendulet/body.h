@@ -61,6 +61,12 @@ struct CollisionFilter {
     uint32_t group = 0;
 };
 
+// What is reported of a collider's contacts, see events.h. Triggers report who comes and goes under `contacts`.
+enum class Events : uint8_t { none = 0, contacts = 1, hits = 2, all = 3 };
+constexpr Events operator|(Events a, Events b) {
+    return static_cast<Events>(static_cast<uint8_t>(a) | static_cast<uint8_t>(b));
+}
+
 // A shape on a body.
 struct ColliderDef {
     Shape shape{};
@@ -72,6 +78,7 @@ struct ColliderDef {
     CollisionFilter filter{};
     float density = 1000.0f;  // kg/m^3, > 0; ignored where the body's mass is given
     bool is_trigger = false;  // reports overlaps, neither pushes nor adds mass
+    Events events = Events::none;
     uint64_t user_data = 0;
 };
 
@@ -89,6 +96,7 @@ struct RigidBodyDef {
     std::optional<float> restitution{};
     float rolling_friction = 0.0f, spinning_friction = 0.0f, tangential_restitution = 0.0f;  // see Material
     CollisionFilter filter{};
+    Events events = Events::none;  // of `shape`
     std::span<const ColliderDef> colliders{};
 
     // Mass properties; what is unset follows from shapes and densities.
@@ -117,6 +125,7 @@ struct StaticBodyDef {
     std::optional<float> restitution{};
     float rolling_friction = 0.0f, spinning_friction = 0.0f, tangential_restitution = 0.0f;  // see Material
     CollisionFilter filter{};
+    Events events = Events::none;  // of `shape`
     std::span<const ColliderDef> colliders{};
     uint64_t user_data = 0;
     std::string_view name{};

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "lendulet/body.h"
+#include "lendulet/events.h"
 #include "lendulet/joint.h"
 #include "lendulet/options.h"
 #include "lendulet/query.h"
@@ -56,6 +57,7 @@ struct WorldConfig {
     int width = 0;    // SIMD lanes 1, 4, 8 or 16, or the most below that this machine has; 0: the most
     bool allow_sleep = true;
     bool continuous = true;  // fast bodies are stopped where they would pass through static and kinematic ones
+    float hit_speed = 1.0f;  // slower meetings are no hits (ContactHit), m/s, >= 0; no result depends on it
     AllocatorHook allocator{};
     TaskHook tasks{};
 };
@@ -225,6 +227,17 @@ public:
     // -1 for bodies that rest, for static and for kinematic ones.
     int64_t island(BodyId id) const;
     std::span<const Overlap> overlaps() const;  // triggers, of the last step; those at rest first
+
+    // --- events (see events.h): what the last update() did. Empty after restore() and in a fork, until the next one.
+    std::span<const ContactEvent> contact_begins() const;
+    std::span<const ContactEvent> contact_ends() const;
+    std::span<const ContactHit> contact_hits() const;
+    // Who came into a trigger and who left it, as of where all were when the step began, as overlaps().
+    std::span<const Overlap> trigger_begins() const;
+    std::span<const Overlap> trigger_ends() const;
+    // Of all bodies, whether they ask or not.
+    std::span<const SleepEvent> sleep_events() const;
+
     // Calls visit(AabbView) for every leaf and node box of the broad phase.
     template <class Visit>
     void for_each_aabb(Visit&& visit) const {
@@ -312,6 +325,7 @@ public:
     WorldBuilder& width(int lanes) { return config_.width = lanes, *this; }
     WorldBuilder& sleep(bool allow) { return config_.allow_sleep = allow, *this; }
     WorldBuilder& continuous(bool on) { return config_.continuous = on, *this; }
+    WorldBuilder& hit_speed(float v) { return config_.hit_speed = v, *this; }
     WorldBuilder& allocator(AllocatorHook hook) { return config_.allocator = hook, *this; }
     WorldBuilder& tasks(TaskHook hook) { return config_.tasks = hook, *this; }
     const WorldConfig& config() const { return config_; }

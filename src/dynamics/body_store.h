@@ -47,6 +47,7 @@ struct BodyChange {
 struct BodyInfo {
     BodyType type = BodyType::fixed;
     bool asleep = false, allow_sleep = true, has_forces = false;
+    bool woken = false;                      // since events were last reported
     bool capped = false, contained = false;  // in the last step: speed cut; state went non-finite and was put back
     float gravity_factor = 1.0f, linear_damping = 0.0f, angular_damping = 0.0f;
     float still_time = 0.0f;     // how long it has been slow, s

@@ -7,6 +7,7 @@
 #include "solver/bodies.h"
 #include "solver/contact.h"
 #include "solver/kernels.h"
+#include "solver/watch.h"
 
 namespace lendulet {
 
@@ -42,10 +43,15 @@ struct BouncingList {
     int count;
     const ContactExtra* extras;  // what some have beside, by record; null where none has
     uint8_t* disturbed;          // by body: 1 where it no longer moves as the step began; null where no contact passes
+    WatchList watched{};         // contacts whose impacts are noted
 };
 
 // Fills in all but `record`, which is given; once bodies are in their blocks.
 void prepare_bouncing(const SolverBodies& bodies, const ContactRecord* records, BouncingContact& contact);
+
+// Whether a contact may meet at k.bounce_speed or faster within k.h, by bounds that hold for all its points: how far
+// these have turned with their bodies, and how fast and how much faster they can become. It was prepared.
+bool may_meet(const SolverBodies& bodies, const BouncingContact& contact, const SubstepConstants& k);
 
 // Marks bodies of the range that constraints have moved since the last substep began; before its kick.
 void mark_disturbed(const SolverBodies& bodies, BodyRange range, uint8_t* disturbed);

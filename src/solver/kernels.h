@@ -54,6 +54,8 @@ struct SolverKernels {
     void (*solve)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*relax)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*store)(const ContactGroup&, ContactRecord*, int begin, int end);
+    // What the points of one manifold of a group carry in this substep, N s; 0 where there is none.
+    void (*read_impulses)(const ContactGroup&, int place, float impulses[4]);
 
     // Bodies [begin, end), both multiples of 16. `begin_step` before the first kick, `settle` after the last relax.
     void (*begin_step)(SolverBodies&, int begin, int end);

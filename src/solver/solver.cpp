@@ -5,7 +5,8 @@
 namespace lendulet {
 namespace {
 
-constexpr int bodies_per_task = 256;   // bodies in a chunk of a parallel loop; a multiple of 16
+constexpr int bodies_per_task = 256;  // bodies in a chunk of a parallel loop; a multiple of 16
+constexpr int watched_per_task = 64;
 constexpr int contacts_per_part = 64;  // the fewest contacts of a colour that are worth a part of a loop
 // Fewer contacts, joints and bodies in all are solved on one thread: a pass is some ten loops, which then take a
 // microsecond each, and two threads took a quarter longer for them than one.
@@ -137,6 +138,62 @@ void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joi
     joints_.prepare(tasks, bodies, joints, contacts, reuse);
 }
 
+void Solver::watch(const WatchList& list) {
+    watched_ = list;
+    if (list.count == 0) return;
+    for (int g = 0; g < schedule_.groups.count(); ++g) {
+        const ContactGroup& group = schedule_.groups[static_cast<size_t>(g)];
+        for (int i = 0; i < group.count; ++i)
+            if (WatchedContact* w = list.of(group.order[i])) w->group = g, w->place = i;
+    }
+}
+
+void Solver::read_watched(const WatchedContact& w, float impulses[4]) const {
+    const ContactGroup& group = schedule_.groups[static_cast<size_t>(w.group)];
+    (group.alone ? scalar_ : kernels_).read_impulses(group, w.place, impulses);
+}
+
+void Solver::bound_watched(TaskPool& tasks, const SolverBodies& bodies, const ContactRecord* records) {
+    watched_bounds_.resize_unset(static_cast<size_t>(watched_.count));
+    tasks.for_each(watched_.count, watched_per_task, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) {
+            const WatchedContact& w = watched_.list[watched_.first + i];
+            BouncingContact& bounds = watched_bounds_[static_cast<size_t>(i)];
+            bounds = BouncingContact(w.record);
+            if (w.speeds) prepare_bouncing(bodies, records, bounds);
+        }
+    });
+}
+
+void Solver::foresee_watched(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records,
+                             const SubstepConstants& k) const {
+    SubstepConstants wide = k;
+    wide.h = 2.0f * k.h;
+    wide.bounce_speed = watched_.least_speed;
+    tasks.for_each(watched_.count, watched_per_task, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) {
+            WatchedContact& w = watched_.list[watched_.first + i];
+            if (!w.speeds || w.group < 0 || !may_meet(bodies, watched_bounds_[static_cast<size_t>(i)], wide)) continue;
+            float held[4];
+            read_watched(w, held);
+            foresee_meetings(bodies, records, w, held, watched_.least_speed, k.h);
+        }
+    });
+}
+
+void Solver::note_watched(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, float h,
+                          bool last) const {
+    tasks.for_each(watched_.count, watched_per_task, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) {
+            WatchedContact& w = watched_.list[watched_.first + i];
+            if (!w.follows || w.group < 0) continue;
+            float impulses[4];
+            read_watched(w, impulses);
+            note_impulses(bodies, records, w, impulses, h, last);
+        }
+    });
+}
+
 // In every pass what lies between tiles comes before what lies within them; so contacts with what is not moved, which
 // are the last of their tile, come last of all. A tile's relax pass therefore stands before the next substep's kick,
 // and its solve before the drift, each with no barrier between.
@@ -152,6 +209,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i)
             if (!impact_ends_[i].passes) prepare_bouncing(bodies, records, bouncing_[i]);
     });
+    if (watched_.count > 0) bound_watched(tasks, bodies, records);
     if (passing_ > 0) disturbed_.assign(static_cast<size_t>(bodies.count), 0);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const SubstepConstants before = k;
@@ -160,17 +218,24 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
         k.last = substep == settings.substeps - 1;
         k.repeat_scale = substep == 1 ? 2.0f : 1.0f;  // the first substep began with half a kick
         k.end_scale = settings.substeps > 1 ? 0.5f : 1.0f;
-        // Impacts look at all bodies at once, which the relax pass must have left.
+        // Impacts and who watches look at all bodies at once, which the relax pass must have left.
         bool relaxed = k.first;
-        if (!bouncing_.empty()) {
-            if (!relaxed)
-                for_each_tile(tasks, range, [&](int tile, BodyRange) { pass_tile(tile, bodies, before, relax); });
+        if (!relaxed && (!bouncing_.empty() || watched_.count > 0)) {
+            for_each_tile(tasks, range, [&](int tile, BodyRange) { pass_tile(tile, bodies, before, relax); });
             relaxed = true;
+        }
+        if (watched_.count > 0 && !k.first) note_watched(tasks, bodies, records, k.h, false);
+        if (!bouncing_.empty()) {
             if (passing_ > 0 && !k.first) mark_disturbed(bodies, range, disturbed_.data());
-            const BouncingList list{bouncing_.data(), impact_ends_.data(), bouncing_.count(), extras_,
-                                    passing_ > 0 ? disturbed_.data() : nullptr};
+            const BouncingList list{bouncing_.data(),
+                                    impact_ends_.data(),
+                                    bouncing_.count(),
+                                    extras_,
+                                    passing_ > 0 ? disturbed_.data() : nullptr,
+                                    watched_};
             k.moved = resolve_impacts(bodies, records, list, k, substep);
         }
+        if (watched_.count > 0) foresee_watched(tasks, bodies, records, k);
         for_each_tile(tasks, range, [&](int tile, BodyRange r) {
             if (!relaxed) pass_tile(tile, bodies, before, relax);
             kernels_.kick(bodies, k, r.begin, r.end);
@@ -191,6 +256,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
         pass_tile(tile, bodies, k, relax);
         kernels_.settle(bodies, r.begin, r.end);
     });
+    if (watched_.count > 0) note_watched(tasks, bodies, records, k.h, true);
 }
 
 void Solver::coast(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, BodyRange range) const {

@@ -16,6 +16,7 @@
 #include "solver/impacts.h"
 #include "solver/joints/joint_solver.h"
 #include "solver/kernels.h"
+#include "solver/watch.h"
 
 namespace lendulet {
 
@@ -49,6 +50,7 @@ public:
           bouncing_(memory),
           impact_ends_(memory),
           disturbed_(memory),
+          watched_bounds_(memory),
           joints_(memory, width),
           kernels_(solver_kernels(width)),
           scalar_(solver_kernels(1)) {}
@@ -79,6 +81,9 @@ public:
     // until store_joints(), and until the next call where that one reuses them.
     void prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joints, ContactList contacts,
                         JointReuse reuse = {});
+    // Contacts that solve() is to note things of, among those of the last schedule(); they must stay until it is done.
+    // A list of none is as good as no call.
+    void watch(const WatchList& list);
     // Runs the substeps; bodies of the range move: all that the contacts and joints given name, and others as well.
     void solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
                BodyRange range);
@@ -119,6 +124,12 @@ private:
     template <class Run>
     void for_each_tile(TaskPool& tasks, BodyRange range, Run&& run) const;
     using Pass = void (*SolverKernels::*)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int, int);
+    void bound_watched(TaskPool& tasks, const SolverBodies& bodies, const ContactRecord* records);
+    void foresee_watched(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records,
+                         const SubstepConstants& k) const;
+    // Of the row of a watched contact: what its points carry, N s.
+    void read_watched(const WatchedContact& contact, float impulses[4]) const;
+    void note_watched(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, float h, bool last) const;
     void pass_tile(int tile, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
     void pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
 
@@ -128,6 +139,8 @@ private:
     int passing_ = 0;                // how many of these pass: the last
     Array<uint8_t> disturbed_;       // by body, see BouncingList
     const ContactExtra* extras_ = nullptr;
+    WatchList watched_;
+    Array<BouncingContact> watched_bounds_;  // of these, see may_meet()
     JointSolver joints_;
     const SolverKernels& kernels_;
     const SolverKernels& scalar_;

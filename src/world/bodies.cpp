@@ -115,6 +115,7 @@ std::vector<ColliderDef> colliders_of(const Def& def, float density) {
     one.material.spinning_friction = def.spinning_friction;
     one.material.tangential_restitution = def.tangential_restitution;
     one.filter = def.filter;
+    one.events = def.events;
     one.density = density;
     return {one};
 }
@@ -208,6 +209,7 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
         world.at_rest.resize(world.frames.size());
         world.box_place.resize(world.frames.size(), no_box);
         world.box_place[slot] = no_box;
+        set_asks(world, slot, c.def.events);
         info.radius = maximum(info.radius, length(world.colliders.local[slot].translation) + ci.radius);
     }
 }
@@ -346,6 +348,7 @@ Status World::remove_body(BodyId id) {
             overlapped |= world.pairs.pairs[number].hit;
             forget_pair(world, number);
         });
+        set_asks(world, c, Events::none);
         remove_box(world, c);
         world.colliders.shape[c] = Sphere{};  // lets go of shared hulls, meshes and height fields
         world.colliders.materials[c].clear();

@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr char magic[8] = {'L', 'E', 'N', 'D', 'S', 'N', 'A', 'P'};
-constexpr uint32_t version = 6;
+constexpr uint32_t version = 7;
 constexpr size_t header_bytes = sizeof magic + 2 * sizeof(uint32_t), checksum_bytes = sizeof(uint64_t);
 
 uint64_t checksum(std::span<const uint8_t> bytes) {
@@ -105,7 +105,7 @@ template <class Bytes>
 void body(Bytes& bytes, SavedBody& b) {
     flags(bytes, b.asleep, b.has_forces, b.placed, b.capped, b.contained, b.stopped, b.loaded, b.fixed);
     if (b.fixed) return;
-    flags(bytes, b.mover);
+    flags(bytes, b.mover, b.woken);
     bytes(b.pose, b.still_time);
     if (b.asleep) bytes(b.momenta.x_low, b.momenta.turn_low);
     else bytes(b.momenta, b.change);
@@ -134,7 +134,7 @@ void joint(Bytes& bytes, SavedJoint& j) {
 template <class Bytes>
 void pair(Bytes& bytes, SavedPair& p) {
     bool cached = p.cache.feature != 0 || p.cache.clearance != 0.0f || p.cache.gjk.count > 0;
-    flags(bytes, p.hit, p.begun, p.kept, cached, p.listed);
+    flags(bytes, p.hit, p.begun, p.kept, cached, p.listed, p.touches);
     bytes(p.a, p.b, p.contacts);
     if (!p.listed) bytes(p.rest_h);
     if (cached) {
@@ -169,6 +169,26 @@ void contact(Bytes& bytes, SavedContact& c) {
 }
 
 template <class Bytes>
+void handle(Bytes& bytes, auto& id) {
+    bytes(id.index, id.generation);
+}
+template <class Bytes>
+void handles(Bytes& bytes, auto& event) {
+    handle(bytes, event.body_a), handle(bytes, event.body_b);
+    handle(bytes, event.collider_a), handle(bytes, event.collider_b);
+}
+template <class Bytes>
+void ended(Bytes& bytes, EndedTouch& e) {
+    handles(bytes, e.pair);
+    flags(bytes, e.trigger);
+}
+template <class Bytes>
+void hit(Bytes& bytes, ContactHit& h) {
+    handles(bytes, h);
+    bytes(h.position, h.normal, h.speed, h.impulse);
+}
+
+template <class Bytes>
 void state(Bytes& bytes, SavedState& s) {
     bytes(s.fingerprint, s.gravity, s.last_h, s.time, s.steps);
     slots(bytes, s.body_slots);
@@ -179,6 +199,8 @@ void state(Bytes& bytes, SavedState& s) {
     bytes.list(s.boxes, [](Bytes& b, BroadBox& box) { b(box.lower, box.upper, box.index); });
     bytes.list(s.pairs, pair<Bytes>);
     bytes.list(s.contacts, contact<Bytes>);
+    bytes.list(s.ended, ended<Bytes>);
+    bytes.list(s.pending, hit<Bytes>);
 }
 
 Error bad(std::string what) { return {ErrorCode::bad_snapshot, "restore: " + std::move(what)}; }

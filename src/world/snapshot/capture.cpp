@@ -78,6 +78,7 @@ SavedBody capture_body(const WorldData& world, uint32_t slot) {
     b.still_time = info.still_time;
     b.asleep = info.asleep, b.has_forces = info.has_forces;
     b.placed = info.placed_at == static_cast<uint32_t>(world.steps);
+    b.woken = info.woken;
     b.mover = info.mover_place != no_slot;
     b.capped = info.capped, b.contained = info.contained, b.stopped = info.stopped;
     if (slot < world.island_loads.size()) {
@@ -94,7 +95,7 @@ void capture_pair(const WorldData& world, uint32_t number, SavedState& state) {
     SavedPair s;
     s.a = p.a, s.b = p.b;
     s.contacts = p.count;
-    s.hit = p.hit, s.begun = p.begun;
+    s.hit = p.hit, s.begun = p.begun, s.touches = p.touches;
     s.listed = p.listed, s.rest_h = p.rest_h;
     s.cache = world.pairs.caches[number];
     s.pose = world.pairs.poses[number];
@@ -120,6 +121,8 @@ void capture_pairs(const WorldData& world, SavedState& state) {
     });
     for (uint32_t number : numbers) capture_pair(world, number, state);
 }
+
+constexpr auto without_world = [](auto& id) { id.generation = Slots::uses_of(id.generation); };
 
 }  // namespace
 
@@ -148,6 +151,14 @@ void capture(const WorldData& world, SavedState& state) {
     }
     state.boxes.append(world.moving_boxes.data(), world.moving_boxes.size());
     capture_pairs(world, state);
+    for (EndedTouch e : world.events.ended) {
+        for_each_handle(e.pair, without_world);
+        state.ended.push_back(e);
+    }
+    for (ContactHit hit : world.events.pending) {
+        for_each_handle(hit, without_world);
+        state.pending.push_back(hit);
+    }
 }
 
 std::vector<uint8_t> World::snapshot() const {

@@ -114,6 +114,9 @@ Status check_pairs(const WorldData& world, const SavedState& state) {
         before = &p;
     }
     if (contacts != state.contacts.size()) return bad("holds contacts of no pair");
+    for (const ContactHit& h : state.pending)
+        if (!is_finite(from_origin(h.position)) || !is_finite(h.normal) || !is_finite(h.speed) || !is_finite(h.impulse))
+            return bad("holds a hit that cannot be");
     for (const SavedContact& c : state.contacts)
         if (!good_contact(c)) return bad("holds a contact that cannot be");
     return {};
@@ -126,6 +129,8 @@ void apply_body(WorldData& world, uint32_t slot, const SavedBody& b) {
     world.bodies.change[slot] = b.change;
     world.bodies.forces[slot] = b.forces;
     info.still_time = b.still_time;
+    info.woken = b.woken;
+    if (b.woken) world.events.woken.push_back(slot);
     info.asleep = b.asleep, info.has_forces = b.has_forces;
     info.capped = b.capped, info.contained = b.contained, info.stopped = b.stopped;
     IslandLoad load{};
@@ -213,7 +218,7 @@ void apply_pair(WorldData& world, const SavedPair& saved, const SavedContact* co
     world.pairs.caches[number] = saved.cache;
     if (saved.kept) world.pairs.poses[number] = saved.pose;
     p.count = p.prepared = saved.contacts;
-    p.hit = saved.hit, p.begun = saved.begun;
+    p.hit = saved.hit, p.begun = saved.begun, p.touches = saved.touches;
     for (uint32_t k = 0; k < p.count; ++k) {
         ContactRecord& r = world.records[p.first_record + k];
         r = contacts[k].record;
@@ -253,6 +258,25 @@ void apply_pairs(WorldData& world, const SavedState& state) {
     list_contacts(world);
 }
 
+void apply_events(WorldData& world, const SavedState& state) {
+    EventData& e = world.events;
+    clear_events(e);
+    e.ended.clear(), e.pending.clear();
+    struct WithWorld {
+        const WorldData& world;
+        void operator()(BodyId& id) const { id.generation = world.bodies.slots.generation_after(id.generation); }
+        void operator()(ColliderId& id) const { id.generation = world.colliders.slots.generation_after(id.generation); }
+    };
+    for (EndedTouch touch : state.ended) {
+        for_each_handle(touch.pair, WithWorld{world});
+        e.ended.push_back(touch);
+    }
+    for (ContactHit hit : state.pending) {
+        for_each_handle(hit, WithWorld{world});
+        e.pending.push_back(hit);
+    }
+}
+
 }  // namespace
 
 Status check_saved(const WorldData& world, const SavedState& state) {
@@ -280,10 +304,12 @@ void apply(WorldData& world, const SavedState& state) {
     world.last_h = world.joints_h = state.last_h;
     world.time = state.time;
     world.steps = state.steps;
+    world.events.woken.clear(), world.events.fallen.clear();
     apply_bodies(world, state);
     apply_boxes(world, state);
     apply_joints(world, state);
     apply_pairs(world, state);
+    apply_events(world, state);
     world.query_scene.all_moved();
 }
 

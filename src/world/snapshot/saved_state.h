@@ -23,6 +23,7 @@ struct SavedBody {
     BodyChange change{};
     BodyForces forces{};
     float still_time = 0.0f;
+    bool woken = false;
     bool fixed = false;  // a static body: nothing but `placed` is saved of it
     bool mover = false;
     bool asleep = false, has_forces = false, placed = false, capped = false, contained = false, stopped = false;
@@ -52,7 +53,7 @@ struct SavedContact {
 struct SavedPair {
     uint32_t a = 0, b = 0;  // collider slots
     uint8_t contacts = 0;   // of SavedState::contacts, in order
-    bool hit = false, begun = false;
+    bool hit = false, begun = false, touches = false;
     bool listed = true;
     float rest_h = 0.0f;  // where it is not listed
     PairCache cache;
@@ -72,7 +73,17 @@ struct SavedState {
     Array<BroadBox> boxes;  // of moving colliders, as the broad phase knows them
     Array<SavedPair> pairs;
     Array<SavedContact> contacts;
+    // Events to be reported, their handles without the number of the world.
+    Array<EndedTouch> ended;
+    Array<ContactHit> pending;
 };
+
+// visit(id) for the handles of an event.
+template <class Event, class Visit>
+void for_each_handle(Event& event, Visit&& visit) {
+    visit(event.body_a), visit(event.body_b);
+    visit(event.collider_a), visit(event.collider_b);
+}
 
 // Hash of what the snapshot does not hold but depends on: settings, and the first bodies and joints by creation.
 uint64_t fingerprint(const WorldData& world, uint32_t bodies, uint32_t joints);
