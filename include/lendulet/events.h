@@ -42,4 +42,12 @@ struct SleepEvent {
     bool asleep;
 };
 
+// A joint broke: JointDef::break_force, break_torque. Its id is that of a removed joint now. Ordered by its index.
+struct JointBreak {
+    JointId joint;
+    BodyId body_a, body_b;
+    uint64_t user_data;  // the joint's
+    Vec3 force, torque;  // which broke it: mean over the step on body B at the anchor, world axes, N and N m
+};
+
 }  // namespace lendulet

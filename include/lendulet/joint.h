@@ -77,6 +77,9 @@ struct JointDef {
     Limit twist_limit{};             // ball: turn of B about the x axis, rad
     SixDegrees axes{};               // six_degrees
     bool collide_connected = false;  // whether the two bodies' colliders still meet
+    // A joint whose force or torque (JointState) exceeds these in a step is removed at its end, and
+    // World::joint_breaks() tells so; N and N m, > 0, infinity: never.
+    float break_force = std::numeric_limits<float>::infinity(), break_torque = std::numeric_limits<float>::infinity();
     uint64_t user_data = 0;
     std::string_view name{};
 };

@@ -237,6 +237,7 @@ public:
     std::span<const Overlap> trigger_ends() const;
     // Of all bodies, whether they ask or not.
     std::span<const SleepEvent> sleep_events() const;
+    std::span<const JointBreak> joint_breaks() const;
 
     // Calls visit(AabbView) for every leaf and node box of the broad phase.
     template <class Visit>

@@ -222,6 +222,7 @@ void clear_events(EventData& e) {
     e.begins.clear(), e.ends.clear(), e.hits.clear();
     e.trigger_begins.clear(), e.trigger_ends.clear();
     e.sleeps.clear();
+    e.breaks.clear();
 }
 
 void watch_contacts(WorldData& world) {
@@ -295,5 +296,7 @@ std::span<const ContactHit> World::contact_hits() const { return all_of(data_->e
 std::span<const Overlap> World::trigger_begins() const { return all_of(data_->events.trigger_begins); }
 std::span<const Overlap> World::trigger_ends() const { return all_of(data_->events.trigger_ends); }
 std::span<const SleepEvent> World::sleep_events() const { return all_of(data_->events.sleeps); }
+
+std::span<const JointBreak> World::joint_breaks() const { return all_of(data_->events.breaks); }
 
 }  // namespace lendulet

@@ -25,6 +25,7 @@ struct EventData {
     Array<ContactHit> hits;
     Array<Overlap> trigger_begins, trigger_ends;
     Array<SleepEvent> sleeps;
+    Array<JointBreak> breaks;
 
     int askers = 0;                 // colliders that ask
     Array<uint8_t> asks;            // by collider: bits of Events
@@ -41,6 +42,7 @@ struct EventData {
           trigger_begins(memory),
           trigger_ends(memory),
           sleeps(memory),
+          breaks(memory),
           asks(memory),
           ended(memory),
           pending(memory),

@@ -112,6 +112,7 @@ void step(WorldData& world, float dt, bool last) {
     stop_at_impacts(world, dt);
     report_events(world);
     finish_step(world, dt);
+    break_joints(world);
     clock.lap(Stage::finish);
 }
 

@@ -280,6 +280,8 @@ void stop_at_impacts(WorldData& world, float dt);
 // Makes events of what the step did.
 void report_events(WorldData& world);
 void finish_step(WorldData& world, float dt);
+// Removes joints that bore too much in the step that is finished.
+void break_joints(WorldData& world);
 
 // The place of WorldData::alone, behind all parts.
 inline constexpr int alone_part = solver_parts;

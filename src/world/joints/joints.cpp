@@ -1,4 +1,6 @@
 // Joints through the public interface: adding, setting and removing.
+#include <algorithm>
+
 #include "world/joints/checks.h"
 #include "world/joints/records.h"
 #include "world/validate.h"
@@ -58,6 +60,17 @@ void remove_joint_at(WorldData& world, uint32_t slot) {
     world.joints.remove(slot);
 }
 
+// Whether a joint of the last step broke in it; what it bore then.
+bool has_broken(const WorldData& world, uint32_t slot, Vec3& force, Vec3& torque) {
+    const JointInfo& j = world.joints.info[slot];
+    if (!j.breaks()) return false;
+    const JointImpulses i = joint_impulses(world, slot);
+    if (!(i.h > 0.0f)) return false;
+    force = (1.0f / i.h) * i.impulse;
+    torque = (1.0f / i.h) * i.angular_impulse;
+    return length(force) > j.break_force || length(torque) > j.break_torque;
+}
+
 }  // namespace
 
 Result<JointId> World::add_joint(const JointDef& def) {
@@ -68,6 +81,8 @@ Result<JointId> World::add_joint(const JointDef& def) {
     if (!a) return a.error();
     if (!b) return b.error();
     if (Status s = check_rows(def, call); !s) return s.error();
+    if (!(def.break_force > 0.0f) || !(def.break_torque > 0.0f))
+        return refused_joint(ErrorCode::bad_joint, call, "the force and torque at which it breaks must be positive");
 
     JointInfo j;
     j.type = def.type;
@@ -81,6 +96,8 @@ Result<JointId> World::add_joint(const JointDef& def) {
     j.spring = def.spring;
     j.swing_limit = def.swing_limit;
     j.twist_limit = def.twist_limit;
+    j.break_force = def.break_force;
+    j.break_torque = def.break_torque;
     j.user_data = def.user_data;
     const bool has_rows = rows_are_data(j);
     const JointAxesInfo rows = has_rows ? rows_of(def) : JointAxesInfo{};
@@ -186,9 +203,25 @@ JointDef World::joint_def(JointId id) const {
     def.twist_limit = j.twist_limit;
     if (j.type == JointType::six_degrees) def.axes = coordinates_of(world.joints.axes[static_cast<size_t>(j.axes)]);
     def.collide_connected = j.collide_connected;
+    def.break_force = j.break_force;
+    def.break_torque = j.break_torque;
     def.user_data = j.user_data;
     def.name = world.joints.name[id.index];
     return def;
+}
+
+void break_joints(WorldData& world) {
+    if (world.joints.breakable() == 0) return;
+    Array<JointBreak>& breaks = world.events.breaks;
+    const size_t first = breaks.size();
+    for (uint32_t slot : world.active_joints) {
+        const JointInfo& j = world.joints.info[slot];
+        JointBreak b{world.joints.id(slot), world.bodies.id(j.body_a), world.bodies.id(j.body_b), j.user_data, {}, {}};
+        if (has_broken(world, slot, b.force, b.torque)) breaks.push_back(b);
+    }
+    std::sort(breaks.begin() + first, breaks.end(),  // order: total
+              [](const JointBreak& x, const JointBreak& y) { return x.joint.index < y.joint.index; });
+    for (size_t i = first; i < breaks.size(); ++i) remove_joint_at(world, breaks[i].joint.index);
 }
 
 void remove_joints_of(WorldData& world, uint32_t body) {

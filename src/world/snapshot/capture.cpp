@@ -58,6 +58,8 @@ uint64_t mix_joint(uint64_t h, const WorldData& world, uint32_t slot) {
                           uint64_t{joint.body_a}, uint64_t{joint.body_b}})
         h = hash_combine(h, word);
     h = hash_combine(h, static_cast<uint64_t>(joint.axes >= 0));
+    const float breaks[2] = {joint.break_force, joint.break_torque};
+    h = hash_floats(h, breaks, 2);
     return mix(mix(h, joint.frame_a), joint.frame_b);
 }
 
