@@ -152,6 +152,9 @@ public:
     const Shape& shape(int collider = 0) const;
     Transform collider_pose(int collider = 0) const;  // from the body's frame to the shape's
     bool is_trigger(int collider = 0) const;
+    const CollisionFilter& filter(int collider = 0) const;
+    const Material& material(int collider = 0) const;  // as given
+    Events events(int collider = 0) const;
     ColliderId collider(int index = 0) const;
     Aabb aabb() const;  // of all colliders, without margin
 
@@ -197,6 +200,23 @@ public:
     Status apply_torque(Vec3 torque);  // N m, held during the next step
     // Kinematic bodies: velocities such that the body arrives at this pose after a step of `dt`.
     Status move_to(Position position, Quat orientation, float dt);
+
+    // Makes a body that was added as dynamic kinematic, and dynamic again: it goes on with the velocities that it has,
+    // forces on it end. Between kinematic and static ones its contacts end and its joints rest. Errors: bad_mass (it
+    // was added as kinematic and has no mass), bad_collider (BodyType::fixed), non_finite (it is too fast for its
+    // mass).
+    Status set_type(BodyType type);
+    // As in RigidBodyDef, from the next step on. Errors: non_finite, bad_material (a negative damping); nothing has
+    // changed then. Kinematic bodies keep these for nothing.
+    Status set_damping(float linear, float angular);  // 1/s
+    Status set_gravity_factor(float factor);
+    void set_bullet(bool bullet);
+    void set_allow_sleep(bool allow);
+    float linear_damping() const;
+    float angular_damping() const;
+    float gravity_factor() const;
+    bool bullet() const;
+    bool allow_sleep() const;
 
     bool asleep() const;
     void wake();

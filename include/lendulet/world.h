@@ -157,6 +157,19 @@ public:
     Status set_motor(JointId id, Coordinate coordinate, Motor motor);
     Status set_spring(JointId id, Spring spring);
     Status set_spring(JointId id, Coordinate coordinate, Spring spring);
+    // Other bounds from the next step on: of a hinge, slider or distance joint, of one coordinate of a six-degree
+    // joint, or of a ball joint: its twist (Coordinate::about_x) and its cone (Coordinate::swing, whose upper bound is
+    // the half angle). Wakes the joint's bodies. Errors: stale_id, wrong_world, non_finite, bad_joint (a joint or
+    // coordinate without such, bounds that add_joint() would refuse). On an error nothing has changed.
+    Status set_limit(JointId id, Limit limit);
+    Status set_limit(JointId id, Coordinate coordinate, Limit limit);
+    // Whom a collider meets, what it is made of, and what it reports from the next step on. Wakes its body and those
+    // that touch it or may do so now. A pair that is filtered out ends; where one begins that overlaps, overlap is
+    // undone as any other. Errors: stale_id, wrong_world; of materials bad_material, and bad_collider where triangles
+    // have materials of their own. On an error nothing has changed.
+    Status set_filter(ColliderId id, const CollisionFilter& filter);
+    Status set_material(ColliderId id, const Material& material);
+    Status set_events(ColliderId id, Events events);
     // A joint's frames on its two bodies from one frame in the world (x axis along `axis`).
     Result<JointDef> joint_at(JointType type, BodyId a, BodyId b, Position anchor,
                               Vec3 axis = {1.0f, 0.0f, 0.0f}) const;
@@ -191,9 +204,9 @@ public:
     uint64_t step_count() const;
 
     // --- snapshots
-    // All that a world's future depends on but shapes, masses and settings: poses, momenta, forces, sleep, joints'
-    // motors, springs and impulses, contacts and what the narrow phase keeps of them, gravity, time. Equal states give
-    // equal bytes. About 100 bytes a body and 250 a contact; O(n).
+    // All that a world's future depends on but shapes, masses and settings: poses, momenta, forces, sleep, what setters
+    // have changed of bodies, colliders and joints, joints' impulses, contacts and what the narrow phase keeps of them,
+    // gravity, time. Equal states give equal bytes. About 100 bytes a body and 250 a contact; O(n).
     std::vector<uint8_t> snapshot() const;
     // Goes back to a snapshot of this world, or of one that was built alike (bodies, joints, settings that results
     // depend on; another number of workers, width or broad phase will do): from there on it computes the same bits.

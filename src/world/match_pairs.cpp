@@ -120,7 +120,7 @@ void tidy_changes(WorldData& world) {
 }
 
 // A removed collider's number may be that of a new one, which the broad phase takes for the old one, moved: what both
-// overlap begins unnoticed.
+// overlap begins unnoticed. So does what a collider with another filter lies in.
 void match_reused(WorldData& world, uint32_t collider) {
     Array<uint32_t>& near = world.continuous.near[0];
     const BroadBox& box = box_of(world, collider);
@@ -170,9 +170,12 @@ void match_pairs(WorldData& world) {
     if (!world.all_pairs_sought)
         for (uint32_t c : world.forgotten)
             if (world.box_place[c] != no_box) match_reused(world, c);
+    for (uint32_t c : world.refiltered)
+        if (world.colliders.info[c].boxed && world.box_place[c] != no_box) match_reused(world, c);
     for (const BodyPair& bodies : world.rejoined) match_joined(world, bodies);
     world.forgotten.clear();
     world.rejoined.clear();
+    world.refiltered.clear();
     world.all_pairs_sought = false;
     if (table.to_be_merged()) table.merge();
     if (table.to_be_swept()) rest_pairs(world);

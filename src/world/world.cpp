@@ -77,6 +77,7 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       ended_pairs(&memory),
       pairs(&memory),
       rejoined(&memory),
+      refiltered(&memory),
       movers(&memory),
       resting(&memory),
       at_rest(&memory),

@@ -156,7 +156,8 @@ struct WorldData {
     Array<BoxPair> box_pairs;       // all pairs, or those that begin
     Array<BoxPair> ended_pairs;
     PairTable pairs;
-    Array<BodyPair> rejoined;  // bodies between which a joint came or went
+    Array<BodyPair> rejoined;    // bodies between which a joint came or went
+    Array<uint32_t> refiltered;  // colliders that may meet others than before
     Movers movers;
     RestingContacts resting;
     Array<uint8_t> at_rest;      // by collider: its body is no mover
@@ -325,6 +326,11 @@ void list_contacts(WorldData& world);
 
 // What a collider reports from now on.
 void set_asks(WorldData& world, uint32_t collider, Events events);
+// Makes a body kinematic or dynamic, but for its pairs.
+void set_body_type(WorldData& world, uint32_t slot, BodyType type);
+// Whom a collider meets, and what it is made of; contacts are told of the latter by the caller.
+void set_collider_filter(WorldData& world, uint32_t collider, const CollisionFilter& filter);
+void set_collider_material(WorldData& world, uint32_t collider, const Material& material);
 // For events: a pair is about to end, a body is about to wake.
 void note_ended(WorldData& world, const ColliderPair& pair);
 void note_woken(WorldData& world, uint32_t slot);

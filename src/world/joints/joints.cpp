@@ -157,6 +157,83 @@ Status World::set_spring(JointId id, Coordinate coordinate, Spring spring) {
     return {};
 }
 
+namespace {
+
+// The limit of a joint, with `coordinate` or, null, the only one it has, in its definition.
+Result<Limit*> limit_in(JointDef& def, const Coordinate* coordinate, const char* call) {
+    const bool only = def.type == JointType::hinge || def.type == JointType::slider || def.type == JointType::distance;
+    if (!coordinate) {
+        if (only) return &def.limit;
+        return refused_joint(ErrorCode::bad_joint, call, "only hinges, sliders and distance joints have one limit");
+    }
+    const int row = static_cast<int>(*coordinate);
+    if (def.type == JointType::ball && *coordinate == Coordinate::about_x) return &def.twist_limit;
+    if (def.type == JointType::six_degrees && row >= 0 && row < joint_coordinates) {
+        JointAxis* const axes[joint_coordinates] = {&def.axes.linear[0],  &def.axes.linear[1],  &def.axes.linear[2],
+                                                    &def.axes.angular[0], &def.axes.angular[1], &def.axes.angular[2],
+                                                    &def.axes.distance,   &def.axes.swing};
+        return &axes[row]->limit;
+    }
+    return refused_joint(ErrorCode::bad_joint, call, "the joint has no limit of that coordinate");
+}
+
+// Which coordinates bounds lock, as bits.
+uint32_t locks_of(const JointDef& def) {
+    uint32_t bits = def.type == JointType::ball && def.swing_limit == 0.0f ? 1u << 31 : 0u;
+    if (def.type != JointType::six_degrees) return bits;
+    for (int i = 0; i < 3; ++i)
+        bits |= uint32_t{def.axes.linear[i].limit.locked()} << i | uint32_t{def.axes.angular[i].limit.locked()}
+                                                                       << (3 + i);
+    return bits | uint32_t{def.axes.distance.limit.locked()} << 6 | uint32_t{def.axes.swing.limit.locked()} << 7;
+}
+
+// Takes the limits of a definition that was checked. What the old ones held is forgotten, and all that the joint held
+// where it locks others now: locks share their impulses.
+void take_limits(WorldData& world, uint32_t slot, const JointDef& def, bool relocked) {
+    drop_joint_records(world);
+    JointInfo& j = world.joints.info[slot];
+    if (relocked) world.joints.impulses[slot] = {};
+    j.limit = def.limit;
+    j.swing_limit = def.swing_limit;
+    j.twist_limit = def.twist_limit;
+    for (float& x : world.joints.impulses[slot].limit) x = 0.0f;
+    world.joint_groups_changed = true;
+    drive_was_set(world, j);
+    if (j.axes < 0) return;
+    JointAxesInfo& axes = world.joints.axes[static_cast<size_t>(j.axes)];
+    if (j.type == JointType::six_degrees) {
+        const JointAxesInfo rows = rows_of(def);
+        for (int i = 0; i < joint_coordinates; ++i) axes.row[i].limit = rows.row[i].limit;
+    } else {
+        axes.row[driven_row(j.type)].limit = def.limit;
+    }
+    for (float& x : axes.limit) x = 0.0f;
+}
+
+Status set_limit_of(World& world, WorldData& data, JointId id, const Coordinate* coordinate, Limit limit) {
+    constexpr const char* call = "set_limit";
+    if (!data.joints.alive(id)) return no_such(data.joints.slots, id.generation, call, "joint");
+    JointDef def = world.joint_def(id);
+    const uint32_t locks = locks_of(def);
+    if (def.type == JointType::ball && coordinate && *coordinate == Coordinate::swing) {
+        def.swing_limit = limit.free() ? 4.0f : limit.upper;
+    } else {
+        Result<Limit*> at = limit_in(def, coordinate, call);
+        if (!at) return at.error();
+        *at.value() = limit;
+    }
+    if (Status s = check_rows(def, call); !s) return s;
+    take_limits(data, id.index, def, locks_of(def) != locks);
+    return {};
+}
+
+}  // namespace
+
+Status World::set_limit(JointId id, Limit limit) { return set_limit_of(*this, *data_, id, nullptr, limit); }
+Status World::set_limit(JointId id, Coordinate coordinate, Limit limit) {
+    return set_limit_of(*this, *data_, id, &coordinate, limit);
+}
+
 Result<JointDef> World::joint_at(JointType type, BodyId a, BodyId b, Position anchor, Vec3 axis) const {
     constexpr const char* call = "joint_at";
     const WorldData& world = *data_;

@@ -105,7 +105,8 @@ template <class Bytes>
 void body(Bytes& bytes, SavedBody& b) {
     flags(bytes, b.asleep, b.has_forces, b.placed, b.capped, b.contained, b.stopped, b.loaded, b.fixed);
     if (b.fixed) return;
-    flags(bytes, b.mover, b.woken);
+    flags(bytes, b.mover, b.woken, b.bullet, b.allow_sleep, b.drags_alike, b.kinematic);
+    if (!b.drags_alike) bytes(b.linear_damping, b.angular_damping, b.gravity_factor);
     bytes(b.pose, b.still_time);
     if (b.asleep) bytes(b.momenta.x_low, b.momenta.turn_low);
     else bytes(b.momenta, b.change);
@@ -120,14 +121,33 @@ void drive(Bytes& bytes, Motor& m, Spring& s) {
 }
 
 template <class Bytes>
+void maybe(Bytes& bytes, std::optional<float>& x) {
+    bool there = x.has_value();
+    float value = x.value_or(0.0f);
+    flags(bytes, there);
+    if (there) bytes(value);
+    x = there ? std::optional<float>(value) : std::nullopt;
+}
+
+template <class Bytes>
+void collider(Bytes& bytes, SavedCollider& c) {
+    bytes(c.filter.category, c.filter.mask, c.filter.group, c.events);
+    Material& m = c.material;
+    maybe(bytes, m.static_friction), maybe(bytes, m.dynamic_friction), maybe(bytes, m.restitution);
+    bytes(m.rolling_friction, m.spinning_friction, m.tangential_restitution);
+    bytes(m.friction_combine, m.restitution_combine);
+}
+
+template <class Bytes>
 void joint(Bytes& bytes, SavedJoint& j) {
     JointImpulses& i = j.impulses;
     drive(bytes, j.motor, j.spring);
+    bytes(j.limit, j.twist_limit, j.swing_limit);
     bytes(i.linear, i.angular, i.limit, i.motor, i.spring, i.flags);
     bytes(i.impulse, i.angular_impulse, i.h);
     flags(bytes, j.has_axes);
     if (!j.has_axes) return;
-    for (JointAxis& axis : j.axes.row) drive(bytes, axis.motor, axis.spring);
+    for (JointAxis& axis : j.axes.row) drive(bytes, axis.motor, axis.spring), bytes(axis.limit);
     bytes(j.axes.limit, j.axes.motor, j.axes.spring);
 }
 
@@ -196,6 +216,8 @@ void state(Bytes& bytes, SavedState& s) {
     slots(bytes, s.joint_slots);
     bytes.list(s.bodies, body<Bytes>);
     bytes.list(s.joints, joint<Bytes>);
+    bytes.list(s.colliders, collider<Bytes>);
+    bytes.list(s.alike, [](Bytes& b, uint32_t& count) { b(count); });
     bytes.list(s.boxes, [](Bytes& b, BroadBox& box) { b(box.lower, box.upper, box.index); });
     bytes.list(s.pairs, pair<Bytes>);
     bytes.list(s.contacts, contact<Bytes>);

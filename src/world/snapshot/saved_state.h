@@ -24,6 +24,9 @@ struct SavedBody {
     BodyForces forces{};
     float still_time = 0.0f;
     bool woken = false;
+    bool kinematic = false, bullet = false, allow_sleep = true;
+    bool drags_alike = false;  // the next three are those of the body before
+    float linear_damping = 0.0f, angular_damping = 0.0f, gravity_factor = 1.0f;
     bool fixed = false;  // a static body: nothing but `placed` is saved of it
     bool mover = false;
     bool asleep = false, has_forces = false, placed = false, capped = false, contained = false, stopped = false;
@@ -34,7 +37,16 @@ struct SavedBody {
     uint8_t substeps = 0, waited = 0, calm = 0;
 };
 
+// Whom a collider meets, what it is made of and what it reports.
+struct SavedCollider {
+    CollisionFilter filter{};
+    Material material{};
+    Events events = Events::none;
+};
+
 struct SavedJoint {
+    Limit limit{}, twist_limit{};
+    float swing_limit = 0.0f;
     Motor motor;
     Spring spring;
     JointImpulses impulses;
@@ -70,6 +82,9 @@ struct SavedState {
     SavedSlots body_slots, collider_slots, joint_slots;
     Array<SavedBody> bodies;  // these two in creation order
     Array<SavedJoint> joints;
+    Array<SavedCollider>
+        colliders;          // in the order of bodies and their lists; those that differ from the one before ...
+    Array<uint32_t> alike;  // ... and for how many each stands
     Array<BroadBox> boxes;  // of moving colliders, as the broad phase knows them
     Array<SavedPair> pairs;
     Array<SavedContact> contacts;
