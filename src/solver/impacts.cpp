@@ -6,8 +6,6 @@ namespace lendulet {
 namespace {
 
 constexpr int max_sweeps = 8, crowd_sweeps = 2;
-// What rounding may add to a distance, in parts of those that it is the sum of.
-constexpr float rounding_share = 1e-5f;
 
 // Both bodies at the moment of the impact.
 struct Meeting {
@@ -197,33 +195,6 @@ void prepare_bouncing(const SolverBodies& bodies, const ContactRecord* records, 
         (side == 0 ? c.pull_a : c.pull_b) =
             2.0f * (side == 0 ? c.reach_a : c.reach_b) * maximum(block.anisotropy[at], 1.0f);
     }
-}
-
-bool may_meet(const SolverBodies& bodies, const BouncingContact& c, const SubstepConstants& k) {
-    const auto a = static_cast<size_t>(c.a), b = static_cast<size_t>(c.b);
-    const BodyState &sa = bodies.state[a], &sb = bodies.state[b];
-    const BodyStart &ta = bodies.start[a], &tb = bodies.start[b];
-    const Vec3 v = (load(tb.v) + load(sb.v)) - (load(ta.v) + load(sa.v)), n = load(c.normal);
-    const Vec3 moved = load(sb.dp) - load(sa.dp);
-    float speed = 0.0f, pull = c.pull, turned_a = 0.0f, turned_b = 0.0f;
-    if (c.reach_a + c.reach_b > 0.0f) {
-        const float wa2 = length_squared(load(ta.w) + load(sa.w)), wb2 = length_squared(load(tb.w) + load(sb.w));
-        speed = square_root(wa2) * c.reach_a + square_root(wb2) * c.reach_b;
-        pull += c.pull_a * wa2 + c.pull_b * wb2;
-        turned_a = 2.0f * length(load(sa.dq)), turned_b = 2.0f * length(load(sb.dq));
-    }
-    const float swing = turned_a * c.reach_a + turned_b * c.reach_b;
-    const float unsure = touching + rounding_share * (length(moved) + c.reach_a + c.reach_b);
-    const float faster = k.h * pull;
-    if (c.radii > 0.0f) {
-        const Vec3 way = n + moved, nearest = way + time_to_meet(way, v, c.radii, k.h) * v;
-        return length(nearest) - c.radii - swing - unsure <= k.h * (speed + faster) &&
-               length(v) + speed + faster >= k.bounce_speed;
-    }
-    const float leaned = c.face_a * turned_a + c.face_b * turned_b;
-    const float approach = (leaned * length(v) - dot(n, v)) + (speed + faster);
-    const float gap = (c.gap + dot(n, moved)) - swing - leaned * (length(moved) + swing + c.span) - unsure;
-    return approach >= k.bounce_speed && gap <= k.h * approach;
 }
 
 void mark_disturbed(const SolverBodies& bodies, BodyRange range, uint8_t* disturbed) {

@@ -49,10 +49,6 @@ struct BouncingList {
 // Fills in all but `record`, which is given; once bodies are in their blocks.
 void prepare_bouncing(const SolverBodies& bodies, const ContactRecord* records, BouncingContact& contact);
 
-// Whether a contact may meet at k.bounce_speed or faster within k.h, by bounds that hold for all its points: how far
-// these have turned with their bodies, and how fast and how much faster they can become. It was prepared.
-bool may_meet(const SolverBodies& bodies, const BouncingContact& contact, const SubstepConstants& k);
-
 // Marks bodies of the range that constraints have moved since the last substep began; before its kick.
 void mark_disturbed(const SolverBodies& bodies, BodyRange range, uint8_t* disturbed);
 

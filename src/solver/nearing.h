@@ -8,12 +8,15 @@
 #include "math/wide/wide.h"
 #include "solver/bodies.h"
 #include "solver/contact.h"
+#include "solver/impacts.h"
 
 namespace lendulet {
 namespace {
 
 #include "solver/turn.inl"
 
+// What rounding may add to a distance, in parts of those that it is the sum of.
+constexpr float rounding_share = 1e-5f;
 // Points closer than this count as touching already: positions a metre from the body's centre resolve 1e-7 m.
 constexpr float touching = 1e-6f;
 
@@ -199,6 +202,35 @@ inline Nearing nearing_of(Side& a, Side& b, const ContactRecord& r, const Contac
     }
     const float approach = dot(v, n), acceleration = dot(b.core_acceleration() - a.core_acceleration(), n);
     return {n, apart, approach, impact_of(gap, approach, acceleration)};
+}
+
+// Whether a contact may meet at k.bounce_speed or faster within k.h, by bounds that hold for all its points: how far
+// these have turned with their bodies, and how fast and how much faster they can become. It was prepared.
+inline bool may_meet(const SolverBodies& bodies, const BouncingContact& c, const SubstepConstants& k) {
+    const auto a = static_cast<size_t>(c.a), b = static_cast<size_t>(c.b);
+    const BodyState &sa = bodies.state[a], &sb = bodies.state[b];
+    const BodyStart &ta = bodies.start[a], &tb = bodies.start[b];
+    const Vec3 v = (load(tb.v) + load(sb.v)) - (load(ta.v) + load(sa.v)), n = load(c.normal);
+    const Vec3 moved = load(sb.dp) - load(sa.dp);
+    float speed = 0.0f, pull = c.pull, turned_a = 0.0f, turned_b = 0.0f;
+    if (c.reach_a + c.reach_b > 0.0f) {
+        const float wa2 = length_squared(load(ta.w) + load(sa.w)), wb2 = length_squared(load(tb.w) + load(sb.w));
+        speed = square_root(wa2) * c.reach_a + square_root(wb2) * c.reach_b;
+        pull += c.pull_a * wa2 + c.pull_b * wb2;
+        turned_a = 2.0f * length(load(sa.dq)), turned_b = 2.0f * length(load(sb.dq));
+    }
+    const float swing = turned_a * c.reach_a + turned_b * c.reach_b;
+    const float unsure = touching + rounding_share * (length(moved) + c.reach_a + c.reach_b);
+    const float faster = k.h * pull;
+    if (c.radii > 0.0f) {
+        const Vec3 way = n + moved, nearest = way + time_to_meet(way, v, c.radii, k.h) * v;
+        return length(nearest) - c.radii - swing - unsure <= k.h * (speed + faster) &&
+               length(v) + speed + faster >= k.bounce_speed;
+    }
+    const float leaned = c.face_a * turned_a + c.face_b * turned_b;
+    const float approach = (leaned * length(v) - dot(n, v)) + (speed + faster);
+    const float gap = (c.gap + dot(n, moved)) - swing - leaned * (length(moved) + swing + c.span) - unsure;
+    return approach >= k.bounce_speed && gap <= k.h * approach;
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 namespace lendulet {
 namespace {
 
-constexpr int bodies_per_task = 256;  // bodies in a chunk of a parallel loop; a multiple of 16
-constexpr int watched_per_task = 64;
+constexpr int bodies_per_task = 256;   // bodies in a chunk of a parallel loop; a multiple of 16
+constexpr int watched_per_task = 64;   // contacts
 constexpr int contacts_per_part = 64;  // the fewest contacts of a colour that are worth a part of a loop
 // Fewer contacts, joints and bodies in all are solved on one thread: a pass is some ten loops, which then take a
 // microsecond each, and two threads took a quarter longer for them than one.
@@ -167,13 +167,11 @@ void Solver::bound_watched(TaskPool& tasks, const SolverBodies& bodies, const Co
 
 void Solver::foresee_watched(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records,
                              const SubstepConstants& k) const {
-    SubstepConstants wide = k;
-    wide.h = 2.0f * k.h;
-    wide.bounce_speed = watched_.least_speed;
     tasks.for_each(watched_.count, watched_per_task, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i) {
             WatchedContact& w = watched_.list[watched_.first + i];
-            if (!w.speeds || w.group < 0 || !may_meet(bodies, watched_bounds_[static_cast<size_t>(i)], wide)) continue;
+            const BouncingContact& bounds = watched_bounds_[static_cast<size_t>(i)];
+            if (!w.speeds || w.group < 0 || !may_meet_soon(bodies, bounds, k, watched_.least_speed)) continue;
             float held[4];
             read_watched(w, held);
             foresee_meetings(bodies, records, w, held, watched_.least_speed, k.h);

@@ -140,7 +140,7 @@ private:
     Array<uint8_t> disturbed_;       // by body, see BouncingList
     const ContactExtra* extras_ = nullptr;
     WatchList watched_;
-    Array<BouncingContact> watched_bounds_;  // of these, see may_meet()
+    Array<BouncingContact> watched_bounds_;  // of these, see may_meet_soon()
     JointSolver joints_;
     const SolverKernels& kernels_;
     const SolverKernels& scalar_;

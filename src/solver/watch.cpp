@@ -15,7 +15,19 @@ void take_meeting(WatchedContact& c, float speed, Vec3 normal, Vec3 place) {
     c.place_of_hit = place;
 }
 
+// How much longer than a substep contacts are looked ahead: rows push where the speed at the end of it would close the
+// gap, which is a little earlier than where the way does.
+constexpr float ahead = 2.0f;
+
 }  // namespace
+
+bool may_meet_soon(const SolverBodies& bodies, const BouncingContact& bounds, const SubstepConstants& k,
+                   float least_speed) {
+    SubstepConstants wide = k;
+    wide.h = ahead * k.h;
+    wide.bounce_speed = least_speed;
+    return may_meet(bodies, bounds, wide);
+}
 
 void foresee_meetings(SolverBodies& bodies, const ContactRecord* records, WatchedContact& c, const float held[4],
                       float least_speed, float h) {
@@ -24,9 +36,7 @@ void foresee_meetings(SolverBodies& bodies, const ContactRecord* records, Watche
     for (int j = 0; j < r.point_count; ++j) {
         if (held[j] > 0.0f || r.points[j].separation >= far_separation) continue;
         const Nearing near = nearing_of(a, b, r, r.points[j], h);
-        // Rows push where the speed at the end of the substep would close the gap, which is a little earlier than
-        // where the way does.
-        if (!(near.approach < 0.0f) || !(near.first.speed >= least_speed) || near.first.time > 2.0f * h) continue;
+        if (!(near.approach < 0.0f) || !(near.first.speed >= least_speed) || near.first.time > ahead * h) continue;
         const Vec3 way = load(b.state->dp) + near.first.time * b.now.v;
         c.nearing[j] = {near.first.speed, near.normal, way + b.now.core - r.radius_b * near.normal};
         c.follows = true;

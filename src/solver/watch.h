@@ -11,6 +11,8 @@
 
 namespace lendulet {
 
+struct BouncingContact;
+
 // A point on its way to meet the other body.
 struct NearingPoint {
     float speed = 0.0f;  // with which it will, along the normal, m/s; 0: it does not
@@ -45,6 +47,9 @@ struct WatchList {
     }
 };
 
+// Whether any of its points may, within the bounds of the contact.
+bool may_meet_soon(const SolverBodies& bodies, const BouncingContact& bounds, const SubstepConstants& k,
+                   float least_speed);
 // Before the rows of a substep, once impacts are done: how fast points that carry nothing will meet. `held`: what they
 // carried in the substep before.
 void foresee_meetings(SolverBodies& bodies, const ContactRecord* records, WatchedContact& contact, const float held[4],

@@ -54,7 +54,7 @@ void renew_surfaces(WorldData& world, ColliderPair& p) {
 
 // A body of another type: pairs are made anew, with what events know of them.
 void renew_pairs_of(WorldData& world, uint32_t collider) {
-    Array<BoxPair> colliders;
+    Array<BoxPair> colliders(&world.memory);
     world.pairs.for_each_of(collider, [&](uint32_t number) {
         const ColliderPair& p = world.pairs.pairs[number];
         if (p.kind != PairKind::trigger) colliders.push_back({p.a, p.b});

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "world/continuous_path.h"
+#include "world/validate.h"
 #include "world/world_data.h"
 
 namespace lendulet {
@@ -140,9 +141,11 @@ private:
 
 void report_hit(WorldData& world, const ColliderPair& p, const PairStep& s, PendingHits& pending) {
     EventData& e = world.events;
-    const bool hits = s.fastest && s.fastest->speed >= world.config.hit_speed;
     ContactHit now{};
-    if (hits) now = hit_of(world, p, s);
+    if (s.fastest) now = hit_of(world, p, s);
+    // What is not finite was contained, and is nothing to tell of.
+    const bool finite = is_finite(from_origin(now.position)) && is_finite(now.normal) && is_finite(now.impulse);
+    const bool hits = s.fastest && finite && now.speed >= world.config.hit_speed;
     if (pending.join(event_of(world, p), hits ? &now : nullptr, s.carried, e.hits) || !hits) return;
     if (s.unanswered) pending.keep(now);
     else e.hits.push_back(now);
