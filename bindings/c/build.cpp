@@ -148,6 +148,8 @@ lendulet_result lendulet_add_joint(lendulet_world* world, const lendulet_joint_d
     def.spring.damping = d->spring[1];
     def.spring.target = d->target;
     def.collide_connected = d->collide != 0;
+    if (d->break_force != 0.0f) def.break_force = d->break_force;
+    if (d->break_torque != 0.0f) def.break_torque = d->break_torque;
     Result<JointId> id = world->scene.world.add_joint(def);
     return id ? 0 : refuse(id.error());
 }

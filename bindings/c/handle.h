@@ -31,6 +31,12 @@ struct lendulet_world {
     std::vector<lendulet_box> boxes;
     std::vector<lendulet_group> groups;
     std::vector<lendulet_motion> motions;
+    std::vector<lendulet_joint> joint_numbers;
+    std::vector<lendulet_shape> shapes;
+    std::vector<lendulet_touch> touches;
+    std::vector<lendulet_blow> hits;
+    std::vector<lendulet_sleep> sleeps;
+    std::vector<lendulet_break> breaks;
     std::vector<lendulet::Shape> given;  // hulls and meshes for parts
 };
 
@@ -43,8 +49,12 @@ inline lendulet_result result_of(const Status& status) { return status.ok() ? 0 
 lendulet_result refuse_null(const char* call);
 lendulet_result refuse_body(const char* call);
 
-inline lendulet_body number_of(BodyId id) { return uint64_t{id.generation} << 32 | id.index; }
-inline BodyId id_of(lendulet_body number) {
+template <class Id>
+uint64_t number_of(Id id) {
+    return uint64_t{id.generation} << 32 | id.index;
+}
+template <class Id = BodyId>
+Id id_of(uint64_t number) {
     return {static_cast<uint32_t>(number), static_cast<uint32_t>(number >> 32)};
 }
 inline Vec3 vector(const float* v) { return {v[0], v[1], v[2]}; }

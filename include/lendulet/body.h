@@ -61,6 +61,12 @@ struct CollisionFilter {
     uint32_t group = 0;
 };
 
+// What is reported of a collider's contacts, see events.h. Triggers report who comes and goes under `contacts`.
+enum class Events : uint8_t { none = 0, contacts = 1, hits = 2, all = 3 };
+constexpr Events operator|(Events a, Events b) {
+    return static_cast<Events>(static_cast<uint8_t>(a) | static_cast<uint8_t>(b));
+}
+
 // A shape on a body.
 struct ColliderDef {
     Shape shape{};
@@ -72,6 +78,7 @@ struct ColliderDef {
     CollisionFilter filter{};
     float density = 1000.0f;  // kg/m^3, > 0; ignored where the body's mass is given
     bool is_trigger = false;  // reports overlaps, neither pushes nor adds mass
+    Events events = Events::none;
     uint64_t user_data = 0;
 };
 
@@ -89,6 +96,7 @@ struct RigidBodyDef {
     std::optional<float> restitution{};
     float rolling_friction = 0.0f, spinning_friction = 0.0f, tangential_restitution = 0.0f;  // see Material
     CollisionFilter filter{};
+    Events events = Events::none;  // of `shape`
     std::span<const ColliderDef> colliders{};
 
     // Mass properties; what is unset follows from shapes and densities.
@@ -117,6 +125,7 @@ struct StaticBodyDef {
     std::optional<float> restitution{};
     float rolling_friction = 0.0f, spinning_friction = 0.0f, tangential_restitution = 0.0f;  // see Material
     CollisionFilter filter{};
+    Events events = Events::none;  // of `shape`
     std::span<const ColliderDef> colliders{};
     uint64_t user_data = 0;
     std::string_view name{};
@@ -143,6 +152,9 @@ public:
     const Shape& shape(int collider = 0) const;
     Transform collider_pose(int collider = 0) const;  // from the body's frame to the shape's
     bool is_trigger(int collider = 0) const;
+    const CollisionFilter& filter(int collider = 0) const;
+    const Material& material(int collider = 0) const;  // as given
+    Events events(int collider = 0) const;
     ColliderId collider(int index = 0) const;
     Aabb aabb() const;  // of all colliders, without margin
 
@@ -188,6 +200,23 @@ public:
     Status apply_torque(Vec3 torque);  // N m, held during the next step
     // Kinematic bodies: velocities such that the body arrives at this pose after a step of `dt`.
     Status move_to(Position position, Quat orientation, float dt);
+
+    // Makes a body that was added as dynamic kinematic, and dynamic again: it goes on with the velocities that it has,
+    // forces on it end. Between kinematic and static ones its contacts end and its joints rest. Errors: bad_mass (it
+    // was added as kinematic and has no mass), bad_collider (BodyType::fixed), non_finite (it is too fast for its
+    // mass).
+    Status set_type(BodyType type);
+    // As in RigidBodyDef, from the next step on. Errors: non_finite, bad_material (a negative damping); nothing has
+    // changed then. Kinematic bodies keep these for nothing.
+    Status set_damping(float linear, float angular);  // 1/s
+    Status set_gravity_factor(float factor);
+    void set_bullet(bool bullet);
+    void set_allow_sleep(bool allow);
+    float linear_damping() const;
+    float angular_damping() const;
+    float gravity_factor() const;
+    bool bullet() const;
+    bool allow_sleep() const;
 
     bool asleep() const;
     void wake();

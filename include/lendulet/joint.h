@@ -50,8 +50,10 @@ struct JointAxis {
 // The coordinates of a six-degree joint. Place and turn of B's frame are measured in A's: the place of its origin along
 // x, y, z (m), and the turn about each of them, 2 atan(q_i / q_w) in (-pi, pi] rad with q the rotation from A's frame
 // to B's. That is the angle of a hinge where the other two are locked, and the twist of a ball joint where they are
-// free. Two more are about several axes at once: the distance of the origins within the plane or space of the axes
-// named, and the angle between the frames' third axes (two axes named) or the whole turn (three), in [0, pi].
+// free. With a static body as A this keeps a body from moving along or turning about axes of the world: a world in a
+// plane locks z and the turns about x and y. Two more are about several axes at once: the distance of the origins
+// within the plane or space of the axes named, and the angle between the frames' third axes (two axes named) or the
+// whole turn (three), in [0, pi].
 struct SixDegrees {
     JointAxis linear[3], angular[3];
     JointAxis distance, swing;
@@ -77,6 +79,9 @@ struct JointDef {
     Limit twist_limit{};             // ball: turn of B about the x axis, rad
     SixDegrees axes{};               // six_degrees
     bool collide_connected = false;  // whether the two bodies' colliders still meet
+    // A joint whose force or torque (JointState) exceeds these in a step is removed at its end, and
+    // World::joint_breaks() tells so; N and N m, > 0, infinity: never.
+    float break_force = std::numeric_limits<float>::infinity(), break_torque = std::numeric_limits<float>::infinity();
     uint64_t user_data = 0;
     std::string_view name{};
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lendulet/body.h"
+#include "lendulet/events.h"
 #include "lendulet/joint.h"
 #include "lendulet/math.h"
 #include "lendulet/options.h"

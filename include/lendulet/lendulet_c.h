@@ -23,11 +23,14 @@ extern "C" {
 #endif
 
 /* Number of this interface; changes where a call or a structure does. */
-#define LENDULET_C_VERSION 2
+#define LENDULET_C_VERSION 3
 uint32_t lendulet_version(void);
 
 typedef struct lendulet_world lendulet_world;
 typedef uint64_t lendulet_body;
+/* As bodies: numbers of joints and of the shapes on bodies. */
+typedef uint64_t lendulet_joint;
+typedef uint64_t lendulet_shape;
 
 /* >= 0: success; < 0: an error, -1 - lendulet::ErrorCode. */
 typedef int32_t lendulet_result;
@@ -216,14 +219,90 @@ typedef struct lendulet_joint_definition {
     int32_t collide;                       /* 1: the two bodies still meet */
     float position_a[3], orientation_a[4]; /* of the joint's frame on body A */
     float position_b[3], orientation_b[4];
-    float limit[2];          /* hinge: rad, slider: m */
-    float swing, twist[2];   /* ball: rad; swing > pi: free */
-    float motor_velocity;    /* rad/s or m/s */
-    float motor_force;       /* N m or N, at most; 0: no motor */
-    float spring[2], target; /* stiffness, damping; rad or m */
+    float limit[2];                  /* hinge: rad, slider: m */
+    float swing, twist[2];           /* ball: rad; swing > pi: free */
+    float motor_velocity;            /* rad/s or m/s */
+    float motor_force;               /* N m or N, at most; 0: no motor */
+    float spring[2], target;         /* stiffness, damping; rad or m */
+    float break_force, break_torque; /* N, N m: above these it breaks; 0: never */
 } lendulet_joint_definition;
 
 lendulet_result lendulet_add_joint(lendulet_world* world, const lendulet_joint_definition* definition);
+
+/* --- changes -------------------------------------------------------------------------------------------------------
+ */
+
+/* The joints in creation order, the one added last as the last; and the shapes of a body. */
+lendulet_result lendulet_read_joint_numbers(lendulet_world* world, const lendulet_joint** out);
+lendulet_result lendulet_read_shapes(lendulet_world* world, lendulet_body body, const lendulet_shape** out);
+
+/* Which coordinate of a joint: the only one of a hinge, slider or distance joint, or one of several, see Coordinate. */
+enum {
+    LENDULET_ONLY = -1,
+    LENDULET_ALONG_X = 0,
+    LENDULET_ALONG_Y = 1,
+    LENDULET_ALONG_Z = 2,
+    LENDULET_ABOUT_X = 3,
+    LENDULET_ABOUT_Y = 4,
+    LENDULET_ABOUT_Z = 5,
+    LENDULET_DISTANCE = 6,
+    LENDULET_SWING = 7
+};
+
+typedef struct lendulet_spring {
+    float stiffness, damping;      /* N/m or N m/rad; N s/m or N m s/rad */
+    float target, target_velocity; /* m or rad; m/s or rad/s */
+    float max_force;               /* N or N m; infinity: no bound */
+} lendulet_spring;
+
+/* See World::set_motor(), set_spring() and set_limit(). */
+lendulet_result lendulet_set_motor(lendulet_world* world, lendulet_joint joint, int32_t coordinate, float velocity,
+                                   float max_force);
+lendulet_result lendulet_set_spring(lendulet_world* world, lendulet_joint joint, int32_t coordinate,
+                                    const lendulet_spring* spring);
+lendulet_result lendulet_set_limit(lendulet_world* world, lendulet_joint joint, int32_t coordinate, float lower,
+                                   float upper);
+/* LENDULET_KINEMATIC or LENDULET_DYNAMIC: see RigidBodyRef::set_type(). */
+lendulet_result lendulet_set_body_type(lendulet_world* world, lendulet_body body, int32_t type);
+/* See World::set_filter(). */
+lendulet_result lendulet_set_filter(lendulet_world* world, lendulet_shape shape, uint64_t category, uint64_t mask,
+                                    uint32_t group);
+
+/* --- events: what the last lendulet_step() did, see lendulet/events.h ----------------------------------------------
+ */
+
+enum { LENDULET_NO_EVENTS = 0, LENDULET_CONTACT_EVENTS = 1, LENDULET_HIT_EVENTS = 2 };
+/* What a shape reports from now on, the sum of some of these; nothing unless it is asked. */
+lendulet_result lendulet_set_events(lendulet_world* world, lendulet_shape shape, int32_t events);
+
+/* Two shapes. Of a trigger and what is in it A is the trigger. Numbers may be those of what is gone. */
+typedef struct lendulet_touch {
+    lendulet_body body_a, body_b;
+    lendulet_shape shape_a, shape_b;
+} lendulet_touch;
+
+enum { LENDULET_CONTACT_BEGINS = 0, LENDULET_CONTACT_ENDS = 1, LENDULET_TRIGGER_BEGINS = 2, LENDULET_TRIGGER_ENDS = 3 };
+lendulet_result lendulet_read_touches(lendulet_world* world, int32_t kind, const lendulet_touch** out);
+
+typedef struct lendulet_blow {
+    lendulet_touch touch;
+    float position[3], normal[3]; /* m; from A to B */
+    float speed, impulse;         /* m/s, N s */
+} lendulet_blow;
+lendulet_result lendulet_read_hits(lendulet_world* world, const lendulet_blow** out);
+
+typedef struct lendulet_sleep {
+    lendulet_body body;
+    int64_t asleep; /* 1: fell asleep, 0: was woken */
+} lendulet_sleep;
+lendulet_result lendulet_read_sleep_events(lendulet_world* world, const lendulet_sleep** out);
+
+typedef struct lendulet_break {
+    lendulet_joint joint; /* which is gone */
+    lendulet_body body_a, body_b;
+    float force[3], torque[3]; /* on B, N and N m */
+} lendulet_break;
+lendulet_result lendulet_read_joint_breaks(lendulet_world* world, const lendulet_break** out);
 
 /* --- figures -------------------------------------------------------------------------------------------------------
  */

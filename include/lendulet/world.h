@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "lendulet/body.h"
+#include "lendulet/events.h"
 #include "lendulet/joint.h"
 #include "lendulet/options.h"
 #include "lendulet/query.h"
@@ -56,6 +57,7 @@ struct WorldConfig {
     int width = 0;    // SIMD lanes 1, 4, 8 or 16, or the most below that this machine has; 0: the most
     bool allow_sleep = true;
     bool continuous = true;  // fast bodies are stopped where they would pass through static and kinematic ones
+    float hit_speed = 1.0f;  // slower meetings are no hits (ContactHit), m/s, >= 0; no result depends on it
     AllocatorHook allocator{};
     TaskHook tasks{};
 };
@@ -155,6 +157,19 @@ public:
     Status set_motor(JointId id, Coordinate coordinate, Motor motor);
     Status set_spring(JointId id, Spring spring);
     Status set_spring(JointId id, Coordinate coordinate, Spring spring);
+    // Other bounds from the next step on: of a hinge, slider or distance joint, of one coordinate of a six-degree
+    // joint, or of a ball joint: its twist (Coordinate::about_x) and its cone (Coordinate::swing, whose upper bound is
+    // the half angle). Wakes the joint's bodies. Errors: stale_id, wrong_world, non_finite, bad_joint (a joint or
+    // coordinate without such, bounds that add_joint() would refuse). On an error nothing has changed.
+    Status set_limit(JointId id, Limit limit);
+    Status set_limit(JointId id, Coordinate coordinate, Limit limit);
+    // Whom a collider meets, what it is made of, and what it reports from the next step on. Wakes its body and those
+    // that touch it or may do so now. A pair that is filtered out ends; where one begins that overlaps, overlap is
+    // undone as any other. Errors: stale_id, wrong_world; of materials bad_material, and bad_collider where triangles
+    // have materials of their own. On an error nothing has changed.
+    Status set_filter(ColliderId id, const CollisionFilter& filter);
+    Status set_material(ColliderId id, const Material& material);
+    Status set_events(ColliderId id, Events events);
     // A joint's frames on its two bodies from one frame in the world (x axis along `axis`).
     Result<JointDef> joint_at(JointType type, BodyId a, BodyId b, Position anchor,
                               Vec3 axis = {1.0f, 0.0f, 0.0f}) const;
@@ -189,9 +204,9 @@ public:
     uint64_t step_count() const;
 
     // --- snapshots
-    // All that a world's future depends on but shapes, masses and settings: poses, momenta, forces, sleep, joints'
-    // motors, springs and impulses, contacts and what the narrow phase keeps of them, gravity, time. Equal states give
-    // equal bytes. About 100 bytes a body and 250 a contact; O(n).
+    // All that a world's future depends on but shapes, masses and settings: poses, momenta, forces, sleep, what setters
+    // have changed of bodies, colliders and joints, joints' impulses, contacts and what the narrow phase keeps of them,
+    // gravity, time. Equal states give equal bytes. About 100 bytes a body and 250 a contact; O(n).
     std::vector<uint8_t> snapshot() const;
     // Goes back to a snapshot of this world, or of one that was built alike (bodies, joints, settings that results
     // depend on; another number of workers, width or broad phase will do): from there on it computes the same bits.
@@ -225,6 +240,18 @@ public:
     // -1 for bodies that rest, for static and for kinematic ones.
     int64_t island(BodyId id) const;
     std::span<const Overlap> overlaps() const;  // triggers, of the last step; those at rest first
+
+    // --- events (see events.h): what the last update() did. Empty after restore() and in a fork, until the next one.
+    std::span<const ContactEvent> contact_begins() const;
+    std::span<const ContactEvent> contact_ends() const;
+    std::span<const ContactHit> contact_hits() const;
+    // Who came into a trigger and who left it, as of where all were when the step began, as overlaps().
+    std::span<const Overlap> trigger_begins() const;
+    std::span<const Overlap> trigger_ends() const;
+    // Of all bodies, whether they ask or not.
+    std::span<const SleepEvent> sleep_events() const;
+    std::span<const JointBreak> joint_breaks() const;
+
     // Calls visit(AabbView) for every leaf and node box of the broad phase.
     template <class Visit>
     void for_each_aabb(Visit&& visit) const {
@@ -312,6 +339,7 @@ public:
     WorldBuilder& width(int lanes) { return config_.width = lanes, *this; }
     WorldBuilder& sleep(bool allow) { return config_.allow_sleep = allow, *this; }
     WorldBuilder& continuous(bool on) { return config_.continuous = on, *this; }
+    WorldBuilder& hit_speed(float v) { return config_.hit_speed = v, *this; }
     WorldBuilder& allocator(AllocatorHook hook) { return config_.allocator = hook, *this; }
     WorldBuilder& tasks(TaskHook hook) { return config_.tasks = hook, *this; }
     const WorldConfig& config() const { return config_; }

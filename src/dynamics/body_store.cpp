@@ -37,11 +37,30 @@ void BodyStore::copy(const BodyStore& o) {
     copy_array(o.pose, pose);
     copy_array(o.momenta, momenta);
     copy_array(o.mass, mass);
+    copy_array(o.own_mass, own_mass);
     copy_array(o.forces, forces);
     copy_array(o.change, change);
     copy_array(o.info, info);
     copy_array(o.principal, principal);
     name = o.name;
+}
+
+void BodyStore::set_type(uint32_t slot, BodyType type) {
+    const Vec3 v = velocity(slot), w = angular_velocity(slot);
+    const bool kinematic = type == BodyType::kinematic;
+    if (kinematic) {
+        own_mass.resize(slots.capacity());
+        own_mass[slot] = mass[slot];
+    }
+    mass[slot] = kinematic ? BodyMass{} : own_mass[slot];
+    info[slot].type = type;
+    BodyMomenta& m = momenta[slot];
+    m.p = kinematic ? v : mass[slot].mass * v;
+    m.L = kinematic ? w : inertia_times(slot, w);
+    m.p_low = {};
+    change[slot] = {};
+    forces[slot] = {};
+    info[slot].has_forces = info[slot].capped = false;
 }
 
 Pose BodyStore::user_pose(uint32_t slot) const { return pose[slot] * inverse(principal[slot]); }

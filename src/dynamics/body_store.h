@@ -47,6 +47,7 @@ struct BodyChange {
 struct BodyInfo {
     BodyType type = BodyType::fixed;
     bool asleep = false, allow_sleep = true, has_forces = false;
+    bool woken = false;                      // since events were last reported
     bool capped = false, contained = false;  // in the last step: speed cut; state went non-finite and was put back
     float gravity_factor = 1.0f, linear_damping = 0.0f, angular_damping = 0.0f;
     float still_time = 0.0f;     // how long it has been slow, s
@@ -54,6 +55,7 @@ struct BodyInfo {
     uint32_t mover_place = ~0u;  // among the bodies that a step looks at; ~0: it does not look at this one
     float radius = 0.0f;         // of a sphere about the centre of mass that holds all colliders
     float depth = 3e38f;         // of the shallowest inner core of its colliders, m
+    bool massless = false;       // was added as kinematic
     bool bullet = false;         // may not pass through moving bodies either
     bool stopped = false;        // at a time of impact, in the last step
     uint32_t first_collider = no_slot;
@@ -67,6 +69,7 @@ struct BodyStore {
     Array<Pose> pose;            // of the principal frame
     Array<BodyMomenta> momenta;  // kinematic bodies: p holds velocity, L angular velocity
     Array<BodyMass> mass;
+    Array<BodyMass> own_mass;  // of kinematic bodies that are dynamic by themselves; may be shorter
     Array<BodyForces> forces;
     Array<BodyChange> change;
     Array<BodyInfo> info;
@@ -78,6 +81,7 @@ struct BodyStore {
           pose(memory),
           momenta(memory),
           mass(memory),
+          own_mass(memory),
           forces(memory),
           change(memory),
           info(memory),
@@ -99,6 +103,12 @@ struct BodyStore {
     SymMat3 inverse_inertia_world(uint32_t slot) const;
     // Theta w: R I R^T w.
     Vec3 inertia_times(uint32_t slot, Vec3 w) const;
+    // The mass that the body has as a dynamic one; none where it was added as kinematic.
+    const BodyMass& mass_as_dynamic(uint32_t slot) const {
+        return info[slot].type == BodyType::kinematic && !info[slot].massless ? own_mass[slot] : mass[slot];
+    }
+    // Makes a body with a mass kinematic or dynamic; its velocities stay.
+    void set_type(uint32_t slot, BodyType type);
     static size_t bytes_per_body();
 };
 

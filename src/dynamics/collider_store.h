@@ -43,6 +43,7 @@ inline bool filters_match(const CollisionFilter& a, const CollisionFilter& b) {
 struct ColliderInfo {
     uint32_t body = no_slot, next = no_slot;  // the body's next collider
     bool is_trigger = false;
+    Events events = Events::none;
     bool boxed = false;     // in the broad phase since the last step; a new owner of a slot is not
     uint32_t boxed_at = 0;  // number of the step in which it came there
     float radius = 0.0f;    // of a sphere about the shape's position that holds it

@@ -18,6 +18,7 @@ uint32_t JointStore::add(const JointInfo& joint, const JointAxesInfo* rows, std:
         free_axes_.pop_back();
         axes[static_cast<size_t>(info[slot].axes)] = *rows;
     }
+    breakable_ += joint.breaks();
     impulses[slot] = {};
     record[slot] = -1;
     name[slot] = std::string(joint_name);
@@ -30,12 +31,14 @@ void JointStore::remove(uint32_t slot) {
     unhang(info[slot].body_a, 2 * slot);
     unhang(info[slot].body_b, 2 * slot + 1);
     if (info[slot].axes >= 0) free_axes_.push_back(info[slot].axes);
+    breakable_ -= info[slot].breaks();
     name[slot].clear();
     slots.remove(slot);
 }
 
 void JointStore::copy(const JointStore& o) {
     slots.copy(o.slots);
+    breakable_ = o.breakable_;
     copy_array(o.info, info);
     copy_array(o.impulses, impulses);
     record.assign(o.record.size(), -1);

@@ -29,7 +29,9 @@ struct JointInfo {
     float swing_limit = 4.0f;
     Limit twist_limit{};
     int32_t axes = -1;  // six_degrees and distance: index in JointStore::axes
+    float break_force = std::numeric_limits<float>::infinity(), break_torque = std::numeric_limits<float>::infinity();
     uint64_t user_data = 0;
+    bool breaks() const { return minimum(break_force, break_torque) < std::numeric_limits<float>::infinity(); }
 };
 
 // The rows of a joint whose rows are data, and what the solver leaves of each: impulses on B, N s and N m s.
@@ -78,6 +80,7 @@ struct JointStore {
     JointId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }
     bool alive(JointId joint) const { return slots.alive(joint.index, joint.generation); }
     int count() const { return slots.count(); }
+    int breakable() const { return breakable_; }
 
     // The youngest joint of a body, or no_joint_link.
     uint32_t first_of(uint32_t body) const {
@@ -98,6 +101,7 @@ private:
     void hang(uint32_t body, uint32_t link);
     void unhang(uint32_t body, uint32_t link);
 
+    int breakable_ = 0;         // how many may break
     Array<uint32_t> next_;      // by link
     Array<uint32_t> first_;     // by body
     Array<int32_t> free_axes_;  // places in `axes` that no joint has

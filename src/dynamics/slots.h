@@ -78,6 +78,10 @@ public:
     // How often the slot was given back: its generation without the number of the world.
     uint32_t uses(uint32_t slot) const { return generation_[slot] & count_mask; }
 
+    // The generation of a slot that was given back so often.
+    uint32_t generation_after(uint32_t uses) const { return first_generation_ | (uses & count_mask); }
+    static uint32_t uses_of(uint32_t generation) { return generation & count_mask; }
+
     // Which slots are handed out next, the last of them first. For snapshots.
     const Array<uint32_t>& free_list() const { return free_; }
     // Brings the list back to what it was when there were `capacity` slots: new objects then get the slots that they

@@ -55,6 +55,8 @@ struct SolverKernels {
     void (*solve)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*relax)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*store)(const ContactGroup&, ContactRecord*, int begin, int end);
+    // What the points of one manifold of a group carry in this substep, N s; 0 where there is none.
+    void (*read_impulses)(const ContactGroup&, int place, float impulses[4]);
 
     // Bodies [begin, end), both multiples of 16. `begin_step` before the first kick, `settle` after the last relax.
     void (*begin_step)(SolverBodies&, int begin, int end);
@@ -62,9 +64,8 @@ struct SolverKernels {
     void (*drift)(SolverBodies&, const SubstepConstants&, int begin, int end);
     void (*settle)(SolverBodies&, int begin, int end);
 
-    // Fills in the block of contacts [first, first + meeting_lanes) of `count`; and tells which of them may meet.
-    void (*prepare_meetings)(MeetingBlock&, const SolverBodies&, const ContactRecord*, const ImpactContact*, int first,
-                             int count);
+    // Fills in a block, and tells which contacts of it may meet.
+    void (*prepare_meetings)(MeetingBlock&, const SolverBodies&, const ContactRecord*, const MeetingContacts&);
     void (*find_meetings)(MeetingBlock&, const SolverBodies&, const SubstepConstants&);
 };
 

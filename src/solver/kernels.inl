@@ -60,6 +60,22 @@ void store_group(const ContactGroup& g, ContactRecord* records, int begin, int e
     else if (g.points == 2) store_rolling<W, 2>(g, begin, end);
     else store_rolling<W, 4>(g, begin, end);
 }
+template <int W, int P>
+void read_row(const ContactGroup& g, int place, float impulses[4]) {
+    const auto& row = reinterpret_cast<const ContactRow<W, P>*>(g.rows)[place / W];
+    for (int j = 0; j < P; ++j) {
+        float lanes[W];
+        store_wide(lanes, row.p[j].impulse);
+        impulses[j] = lanes[place % W];
+    }
+}
+template <int W>
+void read_group(const ContactGroup& g, int place, float impulses[4]) {
+    for (int j = 0; j < 4; ++j) impulses[j] = 0.0f;
+    if (g.points == 1) read_row<W, 1>(g, place, impulses);
+    else if (g.points == 2) read_row<W, 2>(g, place, impulses);
+    else read_row<W, 4>(g, place, impulses);
+}
 
 template <int W>
 constexpr SolverKernels make_kernels() {
@@ -71,6 +87,7 @@ constexpr SolverKernels make_kernels() {
             pass_group<W, Pass::solve>,
             pass_group<W, Pass::relax>,
             store_group<W>,
+            read_group<W>,
             begin_bodies<W>,
             kick_bodies<W>,
             drift_bodies<W>,

@@ -17,6 +17,15 @@ struct ImpactContact {
     bool crowded;  // one of a crowd, in which blows go on by rows
 };
 
+// Those that a block is filled in with: [first, first + meeting_lanes) of a list. Impacts look after points that
+// carried nothing, and not after those too slow to bounce.
+enum class MeetingsOf : uint8_t { impacts, all_points };
+struct MeetingContacts {
+    const ImpactContact* list;
+    int first, count;  // and how many there are in all
+    MeetingsOf of;
+};
+
 // Sixteen of them as the kernels see them, component by component; filled in when the step begins.
 inline constexpr int meeting_lanes = 16;
 struct alignas(64) MeetingBlock {

@@ -2,14 +2,15 @@
 
 // The points of W contacts whose records begin with the quads `m`, lanes [at, at + W) of the block.
 template <int W>
-LENDULET_FORCE_INLINE void prepare_cores(MeetingBlock& block, int at, const ManifoldQuads<W, 4>& m,
+LENDULET_FORCE_INLINE void prepare_cores(MeetingBlock& block, int at, const ManifoldQuads<W, 4>& m, MeetingsOf of,
                                          Wide<float, W>& reach_a, Wide<float, W>& reach_b) {
     using F = Wide<float, W>;
     const F zero = splat<F>(0.0f), far = splat<F>(far_separation);
     const Vec3T<F> n{m.head[0], m.head[1], m.head[2]}, offset{m.tail[4], m.tail[5], m.tail[6]};
     for (int j = 0; j < 4; ++j) {
         const F s = m.point[j][3];
-        auto there = (s < splat<F>(0.1f * far_separation)) & (m.head[4 + j] <= zero);
+        const F carried = of == MeetingsOf::impacts ? m.head[4 + j] : zero;
+        auto there = (s < splat<F>(0.1f * far_separation)) & (carried <= zero);
         const Vec3T<F> ra{m.point[j][0], m.point[j][1], m.point[j][2]};
         const F half_gap = splat<F>(0.5f) * s;
         const Vec3T<F> core_a = select(there, ra - (half_gap + m.tail[0]) * n, zero_vector<F>());
@@ -38,29 +39,29 @@ LENDULET_FORCE_INLINE Wide<float, W> pull_of(const SolverBodies& bodies, const i
     return splat<F>(2.0f) * reach * maximum(spin[3], splat<F>(1.0f));
 }
 
-// Fills in the block of contacts [first, first + 16) of `count`.
 template <int W>
 void prepare_meetings(MeetingBlock& block, const SolverBodies& bodies, const ContactRecord* records,
-                      const ImpactContact* contacts, int first, int count) {
+                      const MeetingContacts& contacts) {
     using F = Wide<float, W>;
+    const int first = contacts.first, count = contacts.count;
     block.points = 0;
     for (int at = 0; at < meeting_lanes; at += W) {
         RecordQuads<W> record{floats_of(records), {}};
         for (int l = 0; l < W; ++l) {
             const int i = first + at + l < count ? first + at + l : first;
-            const ImpactContact& c = contacts[i];
+            const ImpactContact& c = contacts.list[i];
             const ContactRecord& r = records[c.record];
             record.index[l] = static_cast<int32_t>(c.record);
             block.a[at + l] = c.a, block.b[at + l] = c.b;
             const bool on_face = turns_with_face(r), balls = (r.flags & contact_balls) != 0;
             block.face[at + l] = on_face ? (r.follow > 0.5f ? 1.0f : -1.0f) : 0.0f;
             block.radii[at + l] = balls ? r.radius_a + r.radius_b : 0.0f;
-            block.slowest[at + l] = slowest_bounce(r);
+            block.slowest[at + l] = contacts.of == MeetingsOf::impacts ? slowest_bounce(r) : 1.0f;
             if (r.point_count > block.points) block.points = r.point_count;
         }
         const ManifoldQuads<W, 4> m(record);
         F reach_a = splat<F>(0.0f), reach_b = reach_a, pull = reach_a;
-        prepare_cores<W>(block, at, m, reach_a, reach_b);
+        prepare_cores<W>(block, at, m, contacts.of, reach_a, reach_b);
         store_wide(block.pull_a + at, pull_of<W>(bodies, block.a + at, reach_a, pull));
         store_wide(block.pull_b + at, pull_of<W>(bodies, block.b + at, reach_b, pull));
         store_wide(block.pull + at, pull);

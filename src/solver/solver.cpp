@@ -1,7 +1,5 @@
 #include "solver/solver.h"
 
-#include <algorithm>
-
 #include "solver/impacts.h"
 
 namespace lendulet {
@@ -138,28 +136,6 @@ void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joi
     joints_.prepare(tasks, bodies, joints, contacts, reuse);
 }
 
-void Solver::find_meetings(TaskPool& tasks, const SolverBodies& bodies, const ContactRecord* records,
-                           const SubstepConstants& k) {
-    const int passing_from = impacts_.count() - passing_;
-    auto is_asked = [&](const ImpactContact& c) {
-        return !c.passes || disturbed_[static_cast<size_t>(c.a)] || disturbed_[static_cast<size_t>(c.b)];
-    };
-    tasks.for_each(meetings_.count(), contacts_per_part / meeting_lanes, [&](int begin, int end, int) {
-        for (int i = begin; i < end; ++i) {
-            MeetingBlock& block = meetings_[static_cast<size_t>(i)];
-            const int first = i * meeting_lanes;
-            const ImpactContact* c = impacts_.data() + first;
-            block.meets = 0;
-            if (first >= passing_from &&
-                std::none_of(c, c + std::min(meeting_lanes, impacts_.count() - first), is_asked))
-                continue;
-            if (!block.ready)
-                kernels_.prepare_meetings(block, bodies, records, impacts_.data(), first, impacts_.count());
-            kernels_.find_meetings(block, bodies, k);
-        }
-    });
-}
-
 // In every pass what lies between tiles comes before what lies within them; so contacts with what is not moved, which
 // are the last of their tile, come last of all. A tile's relax pass therefore stands before the next substep's kick,
 // and its solve before the drift, each with no barrier between.
@@ -172,6 +148,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
     k.joints = !joints_.empty();
     for_each_tile(tasks, range, [&](int, BodyRange r) { kernels_.begin_step(bodies, r.begin, r.end); });
     for (MeetingBlock& block : meetings_) block.ready = false;
+    if (watched_.count > 0) bound_watched(records);
     if (passing_ > 0) disturbed_.assign(static_cast<size_t>(bodies.count), 0);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const SubstepConstants before = k;
@@ -180,18 +157,25 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
         k.last = substep == settings.substeps - 1;
         k.repeat_scale = substep == 1 ? 2.0f : 1.0f;  // the first substep began with half a kick
         k.end_scale = settings.substeps > 1 ? 0.5f : 1.0f;
-        // Impacts look at all bodies at once, which the relax pass must have left.
+        // Impacts and who watches look at all bodies at once, which the relax pass must have left.
         bool relaxed = k.first;
-        if (!impacts_.empty()) {
-            if (!relaxed)
-                for_each_tile(tasks, range, [&](int tile, BodyRange) { pass_tile(tile, bodies, before, relax); });
+        if (!relaxed && (!impacts_.empty() || watched_.count > 0)) {
+            for_each_tile(tasks, range, [&](int tile, BodyRange) { pass_tile(tile, bodies, before, relax); });
             relaxed = true;
+        }
+        if (watched_.count > 0 && !k.first) note_watched(tasks, bodies, records, k.h, false);
+        if (!impacts_.empty()) {
             if (passing_ > 0 && !k.first) mark_disturbed(bodies, range, disturbed_.data());
             find_meetings(tasks, bodies, records, k);
-            const ImpactList list{impacts_.data(), impacts_.count(), meetings_.data(), extras_,
-                                  passing_ > 0 ? disturbed_.data() : nullptr};
+            const ImpactList list{impacts_.data(),
+                                  impacts_.count(),
+                                  meetings_.data(),
+                                  extras_,
+                                  passing_ > 0 ? disturbed_.data() : nullptr,
+                                  watched_};
             k.moved = resolve_impacts(bodies, records, list, k, substep);
         }
+        if (watched_.count > 0) foresee_watched(tasks, bodies, records, k);
         for_each_tile(tasks, range, [&](int tile, BodyRange r) {
             if (!relaxed) pass_tile(tile, bodies, before, relax);
             kernels_.kick(bodies, k, r.begin, r.end);
@@ -212,6 +196,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
         pass_tile(tile, bodies, k, relax);
         kernels_.settle(bodies, r.begin, r.end);
     });
+    if (watched_.count > 0) note_watched(tasks, bodies, records, k.h, true);
 }
 
 void Solver::coast(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, BodyRange range) const {

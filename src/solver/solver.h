@@ -16,6 +16,7 @@
 #include "solver/impacts.h"
 #include "solver/joints/joint_solver.h"
 #include "solver/kernels.h"
+#include "solver/watch.h"
 
 namespace lendulet {
 
@@ -49,6 +50,8 @@ public:
           impacts_(memory),
           meetings_(memory),
           disturbed_(memory),
+          foreseen_(memory),
+          watched_meetings_(memory),
           joints_(memory, width),
           kernels_(solver_kernels(width)),
           scalar_(solver_kernels(1)) {}
@@ -80,6 +83,9 @@ public:
     // until store_joints(), and until the next call where that one reuses them.
     void prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joints, ContactList contacts,
                         JointReuse reuse = {});
+    // Contacts that solve() is to note things of, among those of the last schedule(); they must stay until it is done.
+    // A list of none is as good as no call.
+    void watch(const WatchList& list);
     // Runs the substeps; bodies of the range move: all that the contacts and joints given name, and others as well.
     void solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
                BodyRange range);
@@ -120,19 +126,27 @@ private:
     template <class Run>
     void for_each_tile(TaskPool& tasks, BodyRange range, Run&& run) const;
     using Pass = void (*SolverKernels::*)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int, int);
+    // Which of `impacts_` may meet in this substep; prepares what of it is to be asked.
+    void find_meetings(TaskPool& tasks, const SolverBodies& bodies, const ContactRecord* records,
+                       const SubstepConstants& k);
+    void bound_watched(const ContactRecord* records);
+    void foresee_watched(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records,
+                         const SubstepConstants& k);
+    // Of the row of a watched contact: what its points carry, N s.
+    void read_watched(const WatchedContact& contact, float impulses[4]) const;
+    void note_watched(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, float h, bool last) const;
     void pass_tile(int tile, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
     void pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
 
     ColourSchedule schedule_;
-    // Which of `impacts_` may meet in this substep; prepares what of it is to be asked.
-    void find_meetings(TaskPool& tasks, const SolverBodies& bodies, const ContactRecord* records,
-                       const SubstepConstants& k);
-
     Array<ImpactContact> impacts_;
     Array<MeetingBlock> meetings_;  // of these
     int passing_ = 0;               // how many of these pass: the last
     Array<uint8_t> disturbed_;      // by body, see ImpactList
     const ContactExtra* extras_ = nullptr;
+    WatchList watched_;
+    Array<ImpactContact> foreseen_;         // those that have rows and are asked how fast they meet
+    Array<MeetingBlock> watched_meetings_;  // of these
     JointSolver joints_;
     const SolverKernels& kernels_;
     const SolverKernels& scalar_;

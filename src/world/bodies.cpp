@@ -25,31 +25,6 @@ Error refused(ErrorCode code, const char* call, std::string what) {
     return {code, std::string(call) + ": " + std::move(what)};
 }
 
-Result<float> coefficient(std::optional<float> given, float fallback, float most, const char* what, const char* call) {
-    float value = given.value_or(fallback);
-    if (!is_finite(value) || value < 0.0f || value > most)
-        return refused(ErrorCode::bad_material, call,
-                       std::string(what) + " is " + text(value) + ", must be between 0 and " + text(most));
-    return value;
-}
-
-Result<Surface> make_surface(const WorldConfig& config, const Material& m, const char* call) {
-    Result<float> fixed = coefficient(m.static_friction, config.friction, 1e6f, "static friction", call);
-    if (!fixed) return fixed.error();
-    Result<float> sliding =
-        coefficient(m.dynamic_friction, m.static_friction.value_or(config.friction), 1e6f, "dynamic friction", call);
-    if (!sliding) return sliding.error();
-    Result<float> bounce = coefficient(m.restitution, config.restitution, 1.0f, "restitution", call);
-    if (!bounce) return bounce.error();
-    Result<float> rolling = coefficient(m.rolling_friction, 0.0f, 1e6f, "rolling friction", call);
-    if (!rolling) return rolling.error();
-    Result<float> spinning = coefficient(m.spinning_friction, 0.0f, 1e6f, "spinning friction", call);
-    if (!spinning) return spinning.error();
-    Result<float> turned = coefficient(m.tangential_restitution, 0.0f, 1.0f, "tangential restitution", call);
-    if (!turned) return turned.error();
-    return with_defaults(m, config.friction, config.restitution);
-}
-
 // The table of materials that a collider's triangles choose from.
 Result<std::vector<Surface>> make_materials(const WorldConfig& config, const ColliderDef& def, const Geometry& g,
                                             const char* call) {
@@ -115,6 +90,7 @@ std::vector<ColliderDef> colliders_of(const Def& def, float density) {
     one.material.spinning_friction = def.spinning_friction;
     one.material.tangential_restitution = def.tangential_restitution;
     one.filter = def.filter;
+    one.events = def.events;
     one.density = density;
     return {one};
 }
@@ -208,6 +184,7 @@ void store_colliders(WorldData& world, uint32_t body, std::vector<CheckedCollide
         world.at_rest.resize(world.frames.size());
         world.box_place.resize(world.frames.size(), no_box);
         world.box_place[slot] = no_box;
+        set_asks(world, slot, c.def.events);
         info.radius = maximum(info.radius, length(world.colliders.local[slot].translation) + ci.radius);
     }
 }
@@ -224,12 +201,9 @@ Result<std::vector<CheckedCollider>> check_colliders(WorldData& world, const std
 }
 
 Status check_motion(const RigidBodyDef& def, const char* call) {
-    bool numbers = is_finite(def.velocity) && is_finite(def.angular_velocity) && is_finite(def.gravity_factor) &&
-                   is_finite(def.linear_damping) && is_finite(def.angular_damping);
-    if (!numbers) return refused(ErrorCode::non_finite, call, "velocities, damping and gravity factor must be finite");
-    if (def.linear_damping < 0.0f || def.angular_damping < 0.0f)
-        return refused(ErrorCode::bad_material, call, "damping must not be negative");
-    return {};
+    if (!is_finite(def.velocity) || !is_finite(def.angular_velocity))
+        return refused(ErrorCode::non_finite, call, "velocities must be finite");
+    return check_drag(def.linear_damping, def.angular_damping, def.gravity_factor, call);
 }
 
 // The last box takes the place of the one that goes.
@@ -287,6 +261,7 @@ Result<BodyId> World::add_rigid_body(const RigidBodyDef& def) {
     uint32_t slot = world.bodies.add();
     BodyInfo& info = world.bodies.info[slot];
     info.type = def.kinematic ? BodyType::kinematic : BodyType::dynamic;
+    info.massless = def.kinematic;
     info.allow_sleep = def.allow_sleep;
     info.bullet = def.bullet;
     info.gravity_factor = def.gravity_factor;
@@ -346,6 +321,7 @@ Status World::remove_body(BodyId id) {
             overlapped |= world.pairs.pairs[number].hit;
             forget_pair(world, number);
         });
+        set_asks(world, c, Events::none);
         remove_box(world, c);
         world.colliders.shape[c] = Sphere{};  // lets go of shared hulls, meshes and height fields
         world.colliders.materials[c].clear();

@@ -42,7 +42,8 @@ std::string check_pairs(const WorldData& w) {
 
 // Right after a step the table has all pairs that it should have, and no others.
 std::string check_completeness(const WorldData& w) {
-    bool told = !w.fixed_changed && w.changed_boxes.empty() && w.forgotten.empty() && w.rejoined.empty();
+    bool told = !w.fixed_changed && w.changed_boxes.empty() && w.forgotten.empty() && w.rejoined.empty() &&
+                w.refiltered.empty();
     if (!told) return {};
     if (const char* problem = w.broad_phase.check(); *problem) return problem;
     int found = 0;

@@ -144,6 +144,7 @@ void lay_to_rest(WorldData& world) {
         BodyInfo& info = world.bodies.info[slot];
         if (info.type != BodyType::dynamic || !rests(world, slot)) continue;
         info.asleep = true;
+        world.events.fallen.push_back(slot);
         info.capped = false;
         if (slot < world.island_loads.size()) {
             IslandLoad& load = world.island_loads[slot];
@@ -161,6 +162,7 @@ void lay_to_rest(WorldData& world) {
 void wake_body(WorldData& world, uint32_t slot) {
     BodyInfo& info = world.bodies.info[slot];
     if (info.type == BodyType::fixed) return;
+    note_woken(world, slot);
     info.asleep = false;
     info.still_time = 0.0f;
     add_mover(world, slot);

@@ -75,10 +75,14 @@ bool is_new(const WorldData& world, uint32_t collider) {
 void compare_all(WorldData& world) {
     PairTable& table = world.pairs;
     table.sort(world.box_pairs);
+    auto take_off = [&](uint32_t number) {
+        note_ended(world, table.pairs[number]);
+        table.take_off(number);
+    };
     size_t at = 0, kept = 0, fresh = 0;
     auto key = [](const auto& p) { return uint64_t{p.a} << 32 | p.b; };
     for (const BoxPair& p : world.box_pairs) {
-        while (at < table.listed.size() && key(table.listed[at]) < key(p)) table.take_off(table.listed[at++].pair);
+        while (at < table.listed.size() && key(table.listed[at]) < key(p)) take_off(table.listed[at++].pair);
         if (at < table.listed.size() && key(table.listed[at]) == key(p)) {
             table.listed[kept++] = table.listed[at++];
             continue;
@@ -86,7 +90,7 @@ void compare_all(WorldData& world) {
         bool resting = (world.at_rest[p.a] & world.at_rest[p.b]) != 0, come = is_new(world, p.a) || is_new(world, p.b);
         if (!resting || (come && table.find(p.a, p.b) == no_pair)) world.box_pairs[fresh++] = p;
     }
-    while (at < table.listed.size()) table.take_off(table.listed[at++].pair);
+    while (at < table.listed.size()) take_off(table.listed[at++].pair);
     table.listed.resize_unset(kept);
     world.box_pairs.resize_unset(fresh);
 }
@@ -116,7 +120,7 @@ void tidy_changes(WorldData& world) {
 }
 
 // A removed collider's number may be that of a new one, which the broad phase takes for the old one, moved: what both
-// overlap begins unnoticed.
+// overlap begins unnoticed. So does what a collider with another filter lies in.
 void match_reused(WorldData& world, uint32_t collider) {
     Array<uint32_t>& near = world.continuous.near[0];
     const BroadBox& box = box_of(world, collider);
@@ -166,9 +170,12 @@ void match_pairs(WorldData& world) {
     if (!world.all_pairs_sought)
         for (uint32_t c : world.forgotten)
             if (world.box_place[c] != no_box) match_reused(world, c);
+    for (uint32_t c : world.refiltered)
+        if (world.colliders.info[c].boxed && world.box_place[c] != no_box) match_reused(world, c);
     for (const BodyPair& bodies : world.rejoined) match_joined(world, bodies);
     world.forgotten.clear();
     world.rejoined.clear();
+    world.refiltered.clear();
     world.all_pairs_sought = false;
     if (table.to_be_merged()) table.merge();
     if (table.to_be_swept()) rest_pairs(world);

@@ -137,9 +137,11 @@ void settle_movers(WorldData& world) {
         list_colliders(world);
         // Room for all who may wake, so that waking takes no memory.
         const size_t bodies = world.bodies.info.capacity(), colliders = world.frames.capacity();
-        for (Array<uint32_t>* list : {&m.bodies, &m.merged, &world.waking}) list->reserve(bodies);
+        for (Array<uint32_t>* list : {&m.bodies, &m.merged, &world.waking, &world.events.woken, &world.events.fallen})
+            list->reserve(bodies);
         for (Array<uint32_t>* list : {&m.colliders, &world.changed_boxes}) list->reserve(colliders);
         world.renewed.reserve(colliders);
+        world.events.sleeps.reserve(bodies);
     }
     if (m.joints_changed) list_joints(world);
 }
@@ -188,6 +190,7 @@ void wake_pair(WorldData& world, uint32_t number) {
 
 void end_pair(WorldData& world, uint32_t number) {
     const ColliderPair& p = world.pairs.pairs[number];
+    note_ended(world, p);
     if (!p.listed) take_from_rest(world, p);
     world.pairs.end(number);
 }

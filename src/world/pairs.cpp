@@ -161,7 +161,7 @@ void PairTable::end(uint32_t number, Array<uint32_t>& numbers) {
     numbers.push_back(number);
     p.a = no_pair;
     p.count = 0;
-    p.hit = false;
+    p.hit = p.touches = false;
 }
 
 uint32_t PairTable::find(uint32_t a, uint32_t b) const {

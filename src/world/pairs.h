@@ -47,6 +47,7 @@ struct ColliderPair {
     bool covered;  // some of its manifolds are: see mark_covered()
     bool listed;   // a step looks at it
     bool bounces;  // of two sharp boxes: with a restitution
+    bool touches;  // as events have reported, or would have: only kept up where a collider asks for events
     float rest_h;  // of a pair that rests: the substep that its impulses belong to, s
 };
 

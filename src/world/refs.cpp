@@ -40,6 +40,15 @@ const Shape& StaticBodyRef::shape(int collider) const {
 bool StaticBodyRef::is_trigger(int collider) const {
     return world_->colliders.info[collider_slot(*world_, slot_, collider)].is_trigger;
 }
+const CollisionFilter& StaticBodyRef::filter(int collider) const {
+    return world_->colliders.info[collider_slot(*world_, slot_, collider)].filter;
+}
+const Material& StaticBodyRef::material(int collider) const {
+    return world_->colliders.material[collider_slot(*world_, slot_, collider)];
+}
+Events StaticBodyRef::events(int collider) const {
+    return world_->colliders.info[collider_slot(*world_, slot_, collider)].events;
+}
 Transform StaticBodyRef::collider_pose(int collider) const {
     return world_->colliders.given[collider_slot(*world_, slot_, collider)];
 }

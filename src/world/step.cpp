@@ -95,6 +95,7 @@ void step(WorldData& world, float dt, bool last) {
     limit_recovery(world, dt);
     pack_extras(world, dt);
     prepare_solvers(world, dt);
+    watch_contacts(world);
     clock.lap(Stage::prepare);
     for (int c = 0; c < solver_parts; ++c) {
         SolverSettings s = settings;
@@ -109,7 +110,9 @@ void step(WorldData& world, float dt, bool last) {
     }
     unpack_bodies(world, dt, last);
     stop_at_impacts(world, dt);
+    report_events(world);
     finish_step(world, dt);
+    break_joints(world);
     clock.lap(Stage::finish);
 }
 
@@ -154,6 +157,7 @@ Status World::update(float dt) {
     if (world.in_step) return Error{ErrorCode::locked, "update: called from inside a step"};
     if (dt == 0.0f) return {};
     world.in_step = true;
+    clear_events(world.events);
     int parts = 1;
     while (dt > longest_step * static_cast<float>(parts)) ++parts;
     float part = minimum(dt / static_cast<float>(parts), longest_step);

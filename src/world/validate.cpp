@@ -39,4 +39,41 @@ Error no_such(const Slots& slots, uint32_t generation, const char* call, const c
     return {ErrorCode::stale_id, std::string(call) + ": there is no such " + what + " any more"};
 }
 
+namespace {
+
+Result<float> coefficient(std::optional<float> given, float fallback, float most, const char* what, const char* call) {
+    float value = given.value_or(fallback);
+    if (!is_finite(value) || value < 0.0f || value > most)
+        return Error{ErrorCode::bad_material,
+                     std::string(call) + ": " + what + " is " + text(value) + ", must be between 0 and " + text(most)};
+    return value;
+}
+
+}  // namespace
+
+Result<Surface> make_surface(const WorldConfig& config, const Material& m, const char* call) {
+    Result<float> fixed = coefficient(m.static_friction, config.friction, 1e6f, "static friction", call);
+    if (!fixed) return fixed.error();
+    Result<float> sliding =
+        coefficient(m.dynamic_friction, m.static_friction.value_or(config.friction), 1e6f, "dynamic friction", call);
+    if (!sliding) return sliding.error();
+    Result<float> bounce = coefficient(m.restitution, config.restitution, 1.0f, "restitution", call);
+    if (!bounce) return bounce.error();
+    Result<float> rolling = coefficient(m.rolling_friction, 0.0f, 1e6f, "rolling friction", call);
+    if (!rolling) return rolling.error();
+    Result<float> spinning = coefficient(m.spinning_friction, 0.0f, 1e6f, "spinning friction", call);
+    if (!spinning) return spinning.error();
+    Result<float> turned = coefficient(m.tangential_restitution, 0.0f, 1.0f, "tangential restitution", call);
+    if (!turned) return turned.error();
+    return with_defaults(m, config.friction, config.restitution);
+}
+
+Status check_drag(float linear_damping, float angular_damping, float gravity_factor, const char* call) {
+    if (!is_finite(linear_damping) || !is_finite(angular_damping) || !is_finite(gravity_factor))
+        return Error{ErrorCode::non_finite, std::string(call) + ": damping and gravity factor must be finite"};
+    if (linear_damping < 0.0f || angular_damping < 0.0f)
+        return Error{ErrorCode::bad_material, std::string(call) + ": damping must not be negative"};
+    return {};
+}
+
 }  // namespace lendulet

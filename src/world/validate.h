@@ -3,9 +3,11 @@
 
 #include <string>
 
+#include "dynamics/collider_store.h"
 #include "dynamics/slots.h"
 #include "lendulet/math.h"
 #include "lendulet/result.h"
+#include "lendulet/world.h"
 
 namespace lendulet {
 
@@ -18,6 +20,10 @@ Result<Quat> unit_quaternion(Quat q, const char* call);
 Status valid_position(Position p, const char* call);
 // Refusal of a handle of this generation that is not alive: removed, of another world, or never given out.
 Error no_such(const Slots& slots, uint32_t generation, const char* call, const char* what);
+// A material with the world's defaults, where its coefficients are in range: bad_material.
+Result<Surface> make_surface(const WorldConfig& config, const Material& material, const char* call);
+// Of a body: finite, damping not negative.
+Status check_drag(float linear_damping, float angular_damping, float gravity_factor, const char* call);
 // Number as text for messages.
 std::string text(float value);
 

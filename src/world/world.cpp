@@ -46,6 +46,8 @@ Status check_config(const WorldConfig& c) {
         return bad_config("workers are " + std::to_string(c.workers) + ", must be 1 to 64");
     if (c.width != 0 && c.width != 1 && c.width != 4 && c.width != 8 && c.width != 16)
         return bad_config("width is " + std::to_string(c.width) + ", must be 1, 4, 8 or 16");
+    if (!(c.hit_speed >= 0.0f) || !is_finite(c.hit_speed))
+        return bad_config("hit speed is " + text(c.hit_speed) + ", must not be negative");
     if (c.broad_phase > BroadPhaseType::wide_tree) return bad_config("that broad phase is none");
     if (c.simplex > SimplexSolver::half_space) return bad_config("that simplex solver is none");
     if (c.integrator > Integrator::runge_kutta_4) return bad_config("that integrator is none");
@@ -75,9 +77,11 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       ended_pairs(&memory),
       pairs(&memory),
       rejoined(&memory),
+      refiltered(&memory),
       movers(&memory),
       resting(&memory),
       at_rest(&memory),
+      events(&memory),
       continuous(&memory, tasks.workers()),
       query_scene(&memory),
       frames(&memory),

@@ -18,6 +18,7 @@
 #include "solver/solver.h"
 #include "world/body_lanes/kernels.h"
 #include "world/continuous.h"
+#include "world/events.h"
 #include "world/limits.h"
 #include "world/movers.h"
 #include "world/narrow/kernels.h"
@@ -155,12 +156,14 @@ struct WorldData {
     Array<BoxPair> box_pairs;       // all pairs, or those that begin
     Array<BoxPair> ended_pairs;
     PairTable pairs;
-    Array<BodyPair> rejoined;  // bodies between which a joint came or went
+    Array<BodyPair> rejoined;    // bodies between which a joint came or went
+    Array<uint32_t> refiltered;  // colliders that may meet others than before
     Movers movers;
     RestingContacts resting;
     Array<uint8_t> at_rest;      // by collider: its body is no mover
     bool pairs_to_rest = false;  // some listed pairs may have no mover left
 
+    EventData events;
     ContinuousData continuous;
     QueryScene query_scene;  // what queries search, brought up to date by the first of them after a change
 
@@ -253,6 +256,8 @@ void silence_seams(WorldData& world);
 inline constexpr uint32_t contact_covered = 4;  // beside the flags that the solver reads
 void mark_covered(WorldData& world, ColliderPair& p);
 void update_islands(WorldData& world, float dt);
+// Gives the solvers the contacts that events ask for; when they are scheduled and have their rows.
+void watch_contacts(WorldData& world);
 void find_joint_groups(WorldData& world);
 void choose_substeps(WorldData& world, float dt);
 // Takes a contact between bodies at rest that has carried nothing, if its upper body rests on it. A may be static.
@@ -273,7 +278,11 @@ void pack_extras(WorldData& world, float dt);
 JointReuse pack_joints(WorldData& world, float h);
 void unpack_bodies(WorldData& world, float dt, bool forces_end);
 void stop_at_impacts(WorldData& world, float dt);
+// Makes events of what the step did.
+void report_events(WorldData& world);
 void finish_step(WorldData& world, float dt);
+// Removes joints that bore too much in the step that is finished.
+void break_joints(WorldData& world);
 
 // The place of WorldData::alone, behind all parts.
 inline constexpr int alone_part = solver_parts;
@@ -314,6 +323,19 @@ void rest_pairs(WorldData& world);
 float deepest_at_rest(WorldData& world);
 // Contacts and overlaps of the listed pairs, in their order, for later stages and callers.
 void list_contacts(WorldData& world);
+
+// What a collider reports from now on.
+void set_asks(WorldData& world, uint32_t collider, Events events);
+// Makes a body kinematic or dynamic, but for its pairs.
+void set_body_type(WorldData& world, uint32_t slot, BodyType type);
+// Whom a collider meets, and what it is made of; contacts are told of the latter by the caller.
+void set_collider_filter(WorldData& world, uint32_t collider, const CollisionFilter& filter);
+void set_collider_material(WorldData& world, uint32_t collider, const Material& material);
+// For events: a pair is about to end, a body is about to wake.
+void note_ended(WorldData& world, const ColliderPair& pair);
+void note_woken(WorldData& world, uint32_t slot);
+// Empties the lists that the user reads.
+void clear_events(EventData& events);
 
 // Wakes a body; those of its island wake with it in the next step.
 void wake_body(WorldData& world, uint32_t slot);

@@ -14,6 +14,7 @@ const char* test_snapshots(void);
 const char* test_building(void);
 const char* test_forks_and_settings(void);
 const char* test_structures(void);
+const char* test_changes_and_events(void);
 const char* test_refusals(void);
 
 #define TEXT(x) #x
@@ -316,6 +317,100 @@ const char* test_structures(void) {
     EXPECT(moving > 30 && coloured > 30);
     EXPECT(lendulet_read_motions(world, &motions) == 65 && motions[0].mass == 0.0f);
     EXPECT(motions[64].mass > 50.0f && motions[64].momentum[1] != 0.0f && motions[64].reach > 0.5f);
+    lendulet_destroy(world);
+    return NULL;
+}
+
+const char* test_changes_and_events(void) {
+    const float up[3] = {0.0f, 1.5f, 0.0f};
+    const lendulet_spring servo = {50.0f, 10.0f, 0.4f, 0.0f, 1e3f};
+    lendulet_body_definition definition;
+    lendulet_joint_definition hinge;
+    lendulet_part part;
+    lendulet_body ball = 0, post = 0, arm = 0;
+    const lendulet_shape* shapes;
+    const lendulet_joint* joints;
+    const lendulet_joint_state* states;
+    const lendulet_touch* touches;
+    const lendulet_blow* hits;
+    const lendulet_sleep* sleeps;
+    const lendulet_break* breaks;
+    lendulet_body_state state;
+    lendulet_joint joint;
+    int i, begins = 0, blows = 0, slept = 0, broken = 0;
+    lendulet_world* world = with_floor();
+    EXPECT(world != NULL && lendulet_add_sphere(world, 0.5f, up, at_rest, 1000.0f, &ball) == 0);
+    EXPECT(lendulet_read_shapes(world, ball, &shapes) == 1 && lendulet_read_shapes(world, 0, &shapes) < 0);
+    EXPECT(lendulet_read_shapes(world, ball, &shapes) == 1);
+    EXPECT(lendulet_set_events(world, shapes[0], LENDULET_CONTACT_EVENTS + LENDULET_HIT_EVENTS) == 0);
+    EXPECT(lendulet_set_events(world, 0, LENDULET_HIT_EVENTS) < 0);
+    for (i = 0; i < 90; ++i) {
+        EXPECT(run(world, 1));
+        if (lendulet_read_touches(world, LENDULET_CONTACT_BEGINS, &touches) == 1) {
+            ++begins;
+            EXPECT(touches[0].body_b == ball && touches[0].shape_b == shapes[0]);
+        }
+        if (lendulet_read_hits(world, &hits) == 1) {
+            ++blows;
+            EXPECT(fabs(hits[0].speed - sqrt(2.0 * 9.81)) < 0.05 && hits[0].normal[1] > 0.99f);
+            EXPECT(hits[0].impulse > 2000.0f && hits[0].touch.body_b == ball);
+        }
+        if (lendulet_read_sleep_events(world, &sleeps) == 1) slept += sleeps[0].body == ball && sleeps[0].asleep == 1;
+    }
+    EXPECT(begins == 1 && blows == 1 && slept == 1);
+    EXPECT(lendulet_read_touches(world, 4, &touches) < 0 && lendulet_read_touches(world, 3, &touches) == 0);
+    EXPECT(lendulet_set_filter(world, shapes[0], 1, 0, 0) == 0 && run(world, 1));
+    EXPECT(lendulet_read_touches(world, LENDULET_CONTACT_ENDS, &touches) == 1 && touches[0].body_b == ball);
+    EXPECT(lendulet_remove_body(world, ball) == 0);
+
+    memset(&definition, 0, sizeof definition), memset(&part, 0, sizeof part), memset(&hinge, 0, sizeof hinge);
+    definition.orientation[3] = part.orientation[3] = hinge.orientation_a[3] = hinge.orientation_b[3] = 1.0f;
+    definition.gravity_factor = 1.0f;
+    definition.position[1] = 5.0f;
+    part.type = LENDULET_BOX;
+    part.size[0] = part.size[1] = part.size[2] = 0.1f;
+    part.density = 1000.0f, part.friction = part.restitution = -1.0f;
+    EXPECT(lendulet_add_body(world, &definition, &part, 1, &post) == 0);
+    definition.type = LENDULET_DYNAMIC;
+    definition.position[1] = 4.0f;
+    EXPECT(lendulet_add_body(world, &definition, &part, 1, &arm) == 0);
+    hinge.body_a = post, hinge.body_b = arm, hinge.type = LENDULET_HINGE;
+    hinge.position_b[1] = 1.0f;
+    hinge.limit[0] = 1.0f, hinge.limit[1] = -1.0f;
+    hinge.break_force = 20000.0f;
+    EXPECT(lendulet_add_joint(world, &hinge) == 0);
+    EXPECT(lendulet_read_joint_numbers(world, &joints) == 1);
+    joint = joints[0];
+    EXPECT(lendulet_set_motor(world, joint, LENDULET_ONLY, 0.5f, 1e4f) == 0);
+    EXPECT(lendulet_set_motor(world, joint, LENDULET_ONLY, NAN, 1.0f) < 0);
+    EXPECT(lendulet_set_motor(world, joint, 8, 1.0f, 1.0f) < 0 && lendulet_set_motor(world, joint, 0, 1.0f, 1.0f) < 0);
+    EXPECT(run(world, 30) && lendulet_read_joints(world, &states) == 1);
+    EXPECT(fabs(states[0].velocity - 0.5f) < 0.01f && fabs(states[0].value - 0.25f) < 0.01f);
+    EXPECT(lendulet_set_motor(world, joint, LENDULET_ONLY, 0.0f, 0.0f) == 0);
+    EXPECT(lendulet_set_spring(world, joint, LENDULET_ONLY, &servo) == 0 &&
+           lendulet_set_spring(world, joint, LENDULET_ONLY, NULL) < 0);
+    EXPECT(lendulet_set_limit(world, joint, LENDULET_ONLY, -0.1f, 0.1f) == 0);
+    EXPECT(lendulet_set_limit(world, joint, LENDULET_ONLY, 0.2f, 0.1f) < 0);
+    EXPECT(run(world, 120) && lendulet_read_joints(world, &states) == 1 && states[0].value < 0.12f);
+
+    EXPECT(lendulet_set_body_type(world, arm, LENDULET_KINEMATIC) == 0);
+    EXPECT(lendulet_read_body(world, arm, &state) == 0 && state.type == LENDULET_KINEMATIC);
+    EXPECT(lendulet_set_body_type(world, arm, LENDULET_FIXED) < 0 && lendulet_set_body_type(world, post, 2) < 0);
+    EXPECT(lendulet_set_body_type(world, arm, LENDULET_DYNAMIC) == 0);
+    {
+        const float down[3] = {0.0f, -1000.0f, 0.0f}, there[3] = {0.0f, 4.0f, 0.0f};
+        EXPECT(lendulet_apply_impulse(world, arm, down, there) == 0);
+    }
+    for (i = 0; i < 10; ++i) {
+        EXPECT(run(world, 1));
+        if (lendulet_read_joint_breaks(world, &breaks) == 1) {
+            ++broken;
+            EXPECT(breaks[0].joint == joint && breaks[0].body_b == arm && breaks[0].force[1] > 20000.0f);
+        }
+    }
+    EXPECT(broken == 1 && lendulet_read_joint_numbers(world, &joints) == 0);
+    EXPECT(lendulet_set_motor(world, joint, LENDULET_ONLY, 1.0f, 1.0f) < 0);
+    EXPECT(lendulet_read_hits(NULL, &hits) < 0 && lendulet_read_sleep_events(world, NULL) < 0);
     lendulet_destroy(world);
     return NULL;
 }

@@ -13,6 +13,7 @@ const char* test_snapshots(void);
 const char* test_building(void);
 const char* test_forks_and_settings(void);
 const char* test_structures(void);
+const char* test_changes_and_events(void);
 const char* test_refusals(void);
 }
 
@@ -29,6 +30,7 @@ TEST(CInterface, SavesAndRestores) { passes(test_snapshots()); }
 TEST(CInterface, BuildsBodiesAndJoints) { passes(test_building()); }
 TEST(CInterface, ForksAndTunes) { passes(test_forks_and_settings()); }
 TEST(CInterface, ShowsItsStructures) { passes(test_structures()); }
+TEST(CInterface, ChangesAndTells) { passes(test_changes_and_events()); }
 TEST(CInterface, RefusesWithASentence) { passes(test_refusals()); }
 
 TEST(CInterface, ComputesWhatTheCppInterfaceDoes) {

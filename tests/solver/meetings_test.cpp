@@ -92,12 +92,12 @@ struct FlyingPairs {
         contacts[static_cast<size_t>(i)] = {static_cast<uint32_t>(i), r.body_a, r.body_b, false, false, false};
     }
     // Bits of those that may meet, by width.
-    uint64_t find(int width, const SubstepConstants& k) {
+    uint64_t find(int width, const SubstepConstants& k, MeetingsOf of = MeetingsOf::impacts) {
         uint64_t found = 0;
         for (size_t i = 0; i < blocks.size(); ++i) {
             const auto first = static_cast<int>(i) * meeting_lanes;
             const SolverKernels& kernels = solver_kernels(width);
-            kernels.prepare_meetings(blocks[i], bodies, records.data(), contacts.data(), first, contacts_of_case);
+            kernels.prepare_meetings(blocks[i], bodies, records.data(), {contacts.data(), first, contacts_of_case, of});
             kernels.find_meetings(blocks[i], bodies, k);
             found |= uint64_t{blocks[i].meets} << first;
         }
@@ -153,6 +153,7 @@ TEST(Meetings, WhatCarriedSomethingMeetsNothingByItself) {
     for (ContactRecord& r : pairs.records)
         for (float& impulse : r.normal_impulse) impulse = 1.0f;
     EXPECT_EQ(pairs.find(1, k), 0u);
+    EXPECT_NE(pairs.find(1, k, MeetingsOf::all_points), 0u);
 }
 
 // Only blows after which the bodies part with the bounce speed are impacts.

@@ -384,5 +384,36 @@ TEST(SixDegrees, ComeAndGo) {
     EXPECT_EQ(p.world.check(), "");
 }
 
+// Bodies of a world in the plane: z and the turns about x and y are locked against a static body.
+TEST(SixDegrees, AWorldInAPlane) {
+    World world = WorldBuilder().build().value();
+    world.add_static_body({.shape = Plane{}}).value();
+    const BodyId anchor = world.add_static_body({.shape = Sphere{0.1f}, .position = {0.0f, -50.0f, 0.0f}}).value();
+    std::vector<BodyId> boxes;
+    for (int i = 0; i < 10; ++i) {
+        const auto k = static_cast<float>(i);
+        boxes.push_back(world
+                            .add_rigid_body({.shape = Box{{0.4f, 0.3f, 0.2f}},
+                                             .position = {0.3f * static_cast<float>(i % 3), 1.0f + 0.8f * k, 0.0f},
+                                             .angular_velocity = {0.0f, 0.0f, k}})
+                            .value());
+        JointDef def =
+            world.joint_at(JointType::six_degrees, anchor, boxes.back(), world.get(boxes.back()).position()).value();
+        def.axes.linear[2].limit = def.axes.angular[0].limit = def.axes.angular[1].limit = {0.0f, 0.0f};
+        world.add_joint(def).value();
+    }
+    float turned = 0.0f;
+    for (int i = 0; i < 300; ++i) {
+        world.update(1.0f / 60.0f).value();
+        for (BodyId id : boxes) {
+            const Quat q = world.get(id).orientation();
+            EXPECT_LT(std::abs(world.get(id).position().z), 1e-3f);
+            EXPECT_LT(std::abs(q.x) + std::abs(q.y), 5e-3f);
+            turned = std::max(turned, std::abs(q.z));
+        }
+    }
+    EXPECT_GT(turned, 0.9f);
+}
+
 }  // namespace
 }  // namespace lendulet

@@ -41,6 +41,17 @@ inline BodyId add_floor(World& world, float half_size = 20.0f) {
         .value();
 }
 
+// A floor with walls, 6 m wide.
+inline void add_bowl(World& world) {
+    add_floor(world);
+    for (int i = 0; i < 4; ++i) {
+        const float x = i == 0 ? 4.0f : i == 1 ? -4.0f : 0.0f, z = i == 2 ? 4.0f : i == 3 ? -4.0f : 0.0f;
+        world
+            .add_static_body({.shape = Box{{i < 2 ? 1.0f : 5.0f, 8.0f, i < 2 ? 5.0f : 1.0f}}, .position = {x, 4.0f, z}})
+            .value();
+    }
+}
+
 // A unit cube of 1000 kg resting at height `level` cubes above the ground.
 inline BodyId add_cube(World& world, float x, int level, float z = 0.0f) {
     return world.add_rigid_body({.shape = Box{}, .position = {x, 0.5f + static_cast<float>(level), z}}).value();

@@ -1,4 +1,6 @@
 // Joints through the public interface: adding, setting and removing.
+#include <algorithm>
+
 #include "world/joints/checks.h"
 #include "world/joints/records.h"
 #include "world/validate.h"
@@ -58,6 +60,17 @@ void remove_joint_at(WorldData& world, uint32_t slot) {
     world.joints.remove(slot);
 }
 
+// Whether a joint of the last step broke in it; what it bore then.
+bool has_broken(const WorldData& world, uint32_t slot, Vec3& force, Vec3& torque) {
+    const JointInfo& j = world.joints.info[slot];
+    if (!j.breaks()) return false;
+    const JointImpulses i = joint_impulses(world, slot);
+    if (!(i.h > 0.0f)) return false;
+    force = (1.0f / i.h) * i.impulse;
+    torque = (1.0f / i.h) * i.angular_impulse;
+    return length(force) > j.break_force || length(torque) > j.break_torque;
+}
+
 }  // namespace
 
 Result<JointId> World::add_joint(const JointDef& def) {
@@ -68,6 +81,8 @@ Result<JointId> World::add_joint(const JointDef& def) {
     if (!a) return a.error();
     if (!b) return b.error();
     if (Status s = check_rows(def, call); !s) return s.error();
+    if (!(def.break_force > 0.0f) || !(def.break_torque > 0.0f))
+        return refused_joint(ErrorCode::bad_joint, call, "the force and torque at which it breaks must be positive");
 
     JointInfo j;
     j.type = def.type;
@@ -81,6 +96,8 @@ Result<JointId> World::add_joint(const JointDef& def) {
     j.spring = def.spring;
     j.swing_limit = def.swing_limit;
     j.twist_limit = def.twist_limit;
+    j.break_force = def.break_force;
+    j.break_torque = def.break_torque;
     j.user_data = def.user_data;
     const bool has_rows = rows_are_data(j);
     const JointAxesInfo rows = has_rows ? rows_of(def) : JointAxesInfo{};
@@ -140,6 +157,83 @@ Status World::set_spring(JointId id, Coordinate coordinate, Spring spring) {
     return {};
 }
 
+namespace {
+
+// The limit of a joint, with `coordinate` or, null, the only one it has, in its definition.
+Result<Limit*> limit_in(JointDef& def, const Coordinate* coordinate, const char* call) {
+    const bool only = def.type == JointType::hinge || def.type == JointType::slider || def.type == JointType::distance;
+    if (!coordinate) {
+        if (only) return &def.limit;
+        return refused_joint(ErrorCode::bad_joint, call, "only hinges, sliders and distance joints have one limit");
+    }
+    const int row = static_cast<int>(*coordinate);
+    if (def.type == JointType::ball && *coordinate == Coordinate::about_x) return &def.twist_limit;
+    if (def.type == JointType::six_degrees && row >= 0 && row < joint_coordinates) {
+        JointAxis* const axes[joint_coordinates] = {&def.axes.linear[0],  &def.axes.linear[1],  &def.axes.linear[2],
+                                                    &def.axes.angular[0], &def.axes.angular[1], &def.axes.angular[2],
+                                                    &def.axes.distance,   &def.axes.swing};
+        return &axes[row]->limit;
+    }
+    return refused_joint(ErrorCode::bad_joint, call, "the joint has no limit of that coordinate");
+}
+
+// Which coordinates bounds lock, as bits.
+uint32_t locks_of(const JointDef& def) {
+    uint32_t bits = def.type == JointType::ball && def.swing_limit == 0.0f ? 1u << 31 : 0u;
+    if (def.type != JointType::six_degrees) return bits;
+    for (int i = 0; i < 3; ++i)
+        bits |= uint32_t{def.axes.linear[i].limit.locked()} << i | uint32_t{def.axes.angular[i].limit.locked()}
+                                                                       << (3 + i);
+    return bits | uint32_t{def.axes.distance.limit.locked()} << 6 | uint32_t{def.axes.swing.limit.locked()} << 7;
+}
+
+// Takes the limits of a definition that was checked. What the old ones held is forgotten, and all that the joint held
+// where it locks others now: locks share their impulses.
+void take_limits(WorldData& world, uint32_t slot, const JointDef& def, bool relocked) {
+    drop_joint_records(world);
+    JointInfo& j = world.joints.info[slot];
+    if (relocked) world.joints.impulses[slot] = {};
+    j.limit = def.limit;
+    j.swing_limit = def.swing_limit;
+    j.twist_limit = def.twist_limit;
+    for (float& x : world.joints.impulses[slot].limit) x = 0.0f;
+    world.joint_groups_changed = true;
+    drive_was_set(world, j);
+    if (j.axes < 0) return;
+    JointAxesInfo& axes = world.joints.axes[static_cast<size_t>(j.axes)];
+    if (j.type == JointType::six_degrees) {
+        const JointAxesInfo rows = rows_of(def);
+        for (int i = 0; i < joint_coordinates; ++i) axes.row[i].limit = rows.row[i].limit;
+    } else {
+        axes.row[driven_row(j.type)].limit = def.limit;
+    }
+    for (float& x : axes.limit) x = 0.0f;
+}
+
+Status set_limit_of(World& world, WorldData& data, JointId id, const Coordinate* coordinate, Limit limit) {
+    constexpr const char* call = "set_limit";
+    if (!data.joints.alive(id)) return no_such(data.joints.slots, id.generation, call, "joint");
+    JointDef def = world.joint_def(id);
+    const uint32_t locks = locks_of(def);
+    if (def.type == JointType::ball && coordinate && *coordinate == Coordinate::swing) {
+        def.swing_limit = limit.free() ? 4.0f : limit.upper;
+    } else {
+        Result<Limit*> at = limit_in(def, coordinate, call);
+        if (!at) return at.error();
+        *at.value() = limit;
+    }
+    if (Status s = check_rows(def, call); !s) return s;
+    take_limits(data, id.index, def, locks_of(def) != locks);
+    return {};
+}
+
+}  // namespace
+
+Status World::set_limit(JointId id, Limit limit) { return set_limit_of(*this, *data_, id, nullptr, limit); }
+Status World::set_limit(JointId id, Coordinate coordinate, Limit limit) {
+    return set_limit_of(*this, *data_, id, &coordinate, limit);
+}
+
 Result<JointDef> World::joint_at(JointType type, BodyId a, BodyId b, Position anchor, Vec3 axis) const {
     constexpr const char* call = "joint_at";
     const WorldData& world = *data_;
@@ -186,9 +280,25 @@ JointDef World::joint_def(JointId id) const {
     def.twist_limit = j.twist_limit;
     if (j.type == JointType::six_degrees) def.axes = coordinates_of(world.joints.axes[static_cast<size_t>(j.axes)]);
     def.collide_connected = j.collide_connected;
+    def.break_force = j.break_force;
+    def.break_torque = j.break_torque;
     def.user_data = j.user_data;
     def.name = world.joints.name[id.index];
     return def;
+}
+
+void break_joints(WorldData& world) {
+    if (world.joints.breakable() == 0) return;
+    Array<JointBreak>& breaks = world.events.breaks;
+    const size_t first = breaks.size();
+    for (uint32_t slot : world.active_joints) {
+        const JointInfo& j = world.joints.info[slot];
+        JointBreak b{world.joints.id(slot), world.bodies.id(j.body_a), world.bodies.id(j.body_b), j.user_data, {}, {}};
+        if (has_broken(world, slot, b.force, b.torque)) breaks.push_back(b);
+    }
+    std::sort(breaks.begin() + first, breaks.end(),  // order: total
+              [](const JointBreak& x, const JointBreak& y) { return x.joint.index < y.joint.index; });
+    for (size_t i = first; i < breaks.size(); ++i) remove_joint_at(world, breaks[i].joint.index);
 }
 
 void remove_joints_of(WorldData& world, uint32_t body) {

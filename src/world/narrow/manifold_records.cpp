@@ -58,6 +58,11 @@ void set_surface(const WorldData& world, const ColliderPair& p, ContactRecord& r
     write_surface(combine(c.surface_at(p.a, r.triangle), c.surface_at(p.b, r.triangle)), r);
 }
 
+void renew_surface(const WorldData& world, const ColliderPair& p, ContactRecord& r) {
+    write_surface(combine(world.colliders.surface[p.a], world.colliders.surface[p.b]), r);
+    set_surface(world, p, r);
+}
+
 void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const Manifold& m) {
     const Vec3 arm{a.arm[0], a.arm[1], a.arm[2]};
     r.point_count = m.count;

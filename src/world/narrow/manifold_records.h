@@ -13,6 +13,9 @@ void prepare_record(const WorldData& world, const ColliderPair& p, ContactRecord
 // The surface of a record whose triangle is set, where triangles have materials of their own; else as prepared.
 void set_surface(const WorldData& world, const ColliderPair& p, ContactRecord& r);
 
+// The same after a material has changed.
+void renew_surface(const WorldData& world, const ColliderPair& p, ContactRecord& r);
+
 // All others but impulses and the index of the pair. `a` and `b` are the shapes' frames.
 void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const Manifold& m);
 void fill_record(ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b, const BatchManifold& m);

@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr char magic[8] = {'L', 'E', 'N', 'D', 'S', 'N', 'A', 'P'};
-constexpr uint32_t version = 6;
+constexpr uint32_t version = 7;
 constexpr size_t header_bytes = sizeof magic + 2 * sizeof(uint32_t), checksum_bytes = sizeof(uint64_t);
 
 uint64_t checksum(std::span<const uint8_t> bytes) {
@@ -105,7 +105,8 @@ template <class Bytes>
 void body(Bytes& bytes, SavedBody& b) {
     flags(bytes, b.asleep, b.has_forces, b.placed, b.capped, b.contained, b.stopped, b.loaded, b.fixed);
     if (b.fixed) return;
-    flags(bytes, b.mover);
+    flags(bytes, b.mover, b.woken, b.bullet, b.allow_sleep, b.drags_alike, b.kinematic);
+    if (!b.drags_alike) bytes(b.linear_damping, b.angular_damping, b.gravity_factor);
     bytes(b.pose, b.still_time);
     if (b.asleep) bytes(b.momenta.x_low, b.momenta.turn_low);
     else bytes(b.momenta, b.change);
@@ -120,21 +121,40 @@ void drive(Bytes& bytes, Motor& m, Spring& s) {
 }
 
 template <class Bytes>
+void maybe(Bytes& bytes, std::optional<float>& x) {
+    bool there = x.has_value();
+    float value = x.value_or(0.0f);
+    flags(bytes, there);
+    if (there) bytes(value);
+    x = there ? std::optional<float>(value) : std::nullopt;
+}
+
+template <class Bytes>
+void collider(Bytes& bytes, SavedCollider& c) {
+    bytes(c.filter.category, c.filter.mask, c.filter.group, c.events);
+    Material& m = c.material;
+    maybe(bytes, m.static_friction), maybe(bytes, m.dynamic_friction), maybe(bytes, m.restitution);
+    bytes(m.rolling_friction, m.spinning_friction, m.tangential_restitution);
+    bytes(m.friction_combine, m.restitution_combine);
+}
+
+template <class Bytes>
 void joint(Bytes& bytes, SavedJoint& j) {
     JointImpulses& i = j.impulses;
     drive(bytes, j.motor, j.spring);
+    bytes(j.limit, j.twist_limit, j.swing_limit);
     bytes(i.linear, i.angular, i.limit, i.motor, i.spring, i.flags);
     bytes(i.impulse, i.angular_impulse, i.h);
     flags(bytes, j.has_axes);
     if (!j.has_axes) return;
-    for (JointAxis& axis : j.axes.row) drive(bytes, axis.motor, axis.spring);
+    for (JointAxis& axis : j.axes.row) drive(bytes, axis.motor, axis.spring), bytes(axis.limit);
     bytes(j.axes.limit, j.axes.motor, j.axes.spring);
 }
 
 template <class Bytes>
 void pair(Bytes& bytes, SavedPair& p) {
     bool cached = p.cache.feature != 0 || p.cache.clearance != 0.0f || p.cache.gjk.count > 0;
-    flags(bytes, p.hit, p.begun, p.kept, cached, p.listed);
+    flags(bytes, p.hit, p.begun, p.kept, cached, p.listed, p.touches);
     bytes(p.a, p.b, p.contacts);
     if (!p.listed) bytes(p.rest_h);
     if (cached) {
@@ -169,6 +189,26 @@ void contact(Bytes& bytes, SavedContact& c) {
 }
 
 template <class Bytes>
+void handle(Bytes& bytes, auto& id) {
+    bytes(id.index, id.generation);
+}
+template <class Bytes>
+void handles(Bytes& bytes, auto& event) {
+    handle(bytes, event.body_a), handle(bytes, event.body_b);
+    handle(bytes, event.collider_a), handle(bytes, event.collider_b);
+}
+template <class Bytes>
+void ended(Bytes& bytes, EndedTouch& e) {
+    handles(bytes, e.pair);
+    flags(bytes, e.trigger);
+}
+template <class Bytes>
+void hit(Bytes& bytes, ContactHit& h) {
+    handles(bytes, h);
+    bytes(h.position, h.normal, h.speed, h.impulse);
+}
+
+template <class Bytes>
 void state(Bytes& bytes, SavedState& s) {
     bytes(s.fingerprint, s.gravity, s.last_h, s.time, s.steps);
     slots(bytes, s.body_slots);
@@ -176,9 +216,13 @@ void state(Bytes& bytes, SavedState& s) {
     slots(bytes, s.joint_slots);
     bytes.list(s.bodies, body<Bytes>);
     bytes.list(s.joints, joint<Bytes>);
+    bytes.list(s.colliders, collider<Bytes>);
+    bytes.list(s.alike, [](Bytes& b, uint32_t& count) { b(count); });
     bytes.list(s.boxes, [](Bytes& b, BroadBox& box) { b(box.lower, box.upper, box.index); });
     bytes.list(s.pairs, pair<Bytes>);
     bytes.list(s.contacts, contact<Bytes>);
+    bytes.list(s.ended, ended<Bytes>);
+    bytes.list(s.pending, hit<Bytes>);
 }
 
 Error bad(std::string what) { return {ErrorCode::bad_snapshot, "restore: " + std::move(what)}; }

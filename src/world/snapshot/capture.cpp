@@ -15,8 +15,8 @@ uint64_t mix(uint64_t h, const Transform& t) {
 }
 
 uint64_t mix_settings(uint64_t h, const WorldConfig& c) {
-    float speeds[2] = {c.rigid_separation_speed, c.static_separation_speed};
-    h = hash_floats(h, speeds, 2);
+    float values[4] = {c.rigid_separation_speed, c.static_separation_speed, c.friction, c.restitution};
+    h = hash_floats(h, values, 4);
     for (uint64_t word :
          {static_cast<uint64_t>(c.solver_steps), static_cast<uint64_t>(c.simplex), static_cast<uint64_t>(c.integrator),
           static_cast<uint64_t>(c.allow_sleep), static_cast<uint64_t>(c.continuous)})
@@ -32,10 +32,11 @@ uint64_t mix_surface(uint64_t h, const Surface& s) {
 
 uint64_t mix_body(uint64_t h, const WorldData& world, uint32_t slot) {
     const BodyInfo& info = world.bodies.info[slot];
-    const BodyMass& mass = world.bodies.mass[slot];
+    const BodyMass& mass = world.bodies.mass_as_dynamic(slot);
     h = hash_combine(h, slot);
     h = hash_combine(h, world.bodies.slots.uses(slot));
-    h = hash_combine(h, static_cast<uint64_t>(info.type));
+    h = hash_combine(h, static_cast<uint64_t>(info.type == BodyType::fixed));
+    h = hash_combine(h, static_cast<uint64_t>(info.massless));
     h = mix(hash_floats(h, &mass.mass, 1), mass.inertia);
     // Static bodies are not in the snapshot: they stand where they stand.
     if (info.type == BodyType::fixed)
@@ -45,7 +46,7 @@ uint64_t mix_body(uint64_t h, const WorldData& world, uint32_t slot) {
         h = hash_combine(h, c);
         h = hash_combine(h, static_cast<uint64_t>(world.colliders.geometry[c].kind));
         h = hash_floats(h, &collider.radius, 1);
-        h = mix(mix_surface(h, world.colliders.surface[c]), world.colliders.local[c]);
+        h = mix(h, world.colliders.local[c]);
         h = mix(h, world.colliders.geometry[c].size);
         for (const Surface& s : world.colliders.materials[c]) h = mix_surface(h, s);
     }
@@ -58,6 +59,8 @@ uint64_t mix_joint(uint64_t h, const WorldData& world, uint32_t slot) {
                           uint64_t{joint.body_a}, uint64_t{joint.body_b}})
         h = hash_combine(h, word);
     h = hash_combine(h, static_cast<uint64_t>(joint.axes >= 0));
+    const float breaks[2] = {joint.break_force, joint.break_torque};
+    h = hash_floats(h, breaks, 2);
     return mix(mix(h, joint.frame_a), joint.frame_b);
 }
 
@@ -67,9 +70,16 @@ void capture_slots(const Slots& slots, SavedSlots& saved) {
     saved.free_list.append(slots.free_list().data(), slots.free_list().size());
 }
 
-SavedBody capture_body(const WorldData& world, uint32_t slot) {
+// `before`: what was captured of the last body.
+SavedBody capture_body(const WorldData& world, uint32_t slot, const SavedBody& before) {
     const BodyInfo& info = world.bodies.info[slot];
     SavedBody b;
+    b.kinematic = info.type == BodyType::kinematic;
+    b.bullet = info.bullet, b.allow_sleep = info.allow_sleep;
+    b.linear_damping = info.linear_damping, b.angular_damping = info.angular_damping;
+    b.gravity_factor = info.gravity_factor;
+    b.drags_alike = b.linear_damping == before.linear_damping && b.angular_damping == before.angular_damping &&
+                    b.gravity_factor == before.gravity_factor;
     b.fixed = info.type == BodyType::fixed;
     b.pose = world.bodies.pose[slot];
     b.momenta = world.bodies.momenta[slot];
@@ -78,6 +88,7 @@ SavedBody capture_body(const WorldData& world, uint32_t slot) {
     b.still_time = info.still_time;
     b.asleep = info.asleep, b.has_forces = info.has_forces;
     b.placed = info.placed_at == static_cast<uint32_t>(world.steps);
+    b.woken = info.woken;
     b.mover = info.mover_place != no_slot;
     b.capped = info.capped, b.contained = info.contained, b.stopped = info.stopped;
     if (slot < world.island_loads.size()) {
@@ -89,12 +100,34 @@ SavedBody capture_body(const WorldData& world, uint32_t slot) {
     return b;
 }
 
+bool alike(const Material& x, const Material& y) {
+    return x.static_friction == y.static_friction && x.dynamic_friction == y.dynamic_friction &&
+           x.restitution == y.restitution && x.rolling_friction == y.rolling_friction &&
+           x.spinning_friction == y.spinning_friction && x.tangential_restitution == y.tangential_restitution &&
+           x.friction_combine == y.friction_combine && x.restitution_combine == y.restitution_combine;
+}
+bool alike(const SavedCollider& x, const SavedCollider& y) {
+    return x.filter.category == y.filter.category && x.filter.mask == y.filter.mask &&
+           x.filter.group == y.filter.group && x.events == y.events && alike(x.material, y.material);
+}
+
+void capture_collider(const WorldData& world, uint32_t slot, SavedState& state) {
+    const ColliderInfo& info = world.colliders.info[slot];
+    const SavedCollider c{info.filter, world.colliders.material[slot], info.events};
+    if (!state.colliders.empty() && alike(state.colliders.back(), c)) {
+        ++state.alike.back();
+        return;
+    }
+    state.colliders.push_back(c);
+    state.alike.push_back(1u);
+}
+
 void capture_pair(const WorldData& world, uint32_t number, SavedState& state) {
     const ColliderPair& p = world.pairs.pairs[number];
     SavedPair s;
     s.a = p.a, s.b = p.b;
     s.contacts = p.count;
-    s.hit = p.hit, s.begun = p.begun;
+    s.hit = p.hit, s.begun = p.begun, s.touches = p.touches;
     s.listed = p.listed, s.rest_h = p.rest_h;
     s.cache = world.pairs.caches[number];
     s.pose = world.pairs.poses[number];
@@ -121,6 +154,8 @@ void capture_pairs(const WorldData& world, SavedState& state) {
     for (uint32_t number : numbers) capture_pair(world, number, state);
 }
 
+constexpr auto without_world = [](auto& id) { id.generation = Slots::uses_of(id.generation); };
+
 }  // namespace
 
 uint64_t fingerprint(const WorldData& world, uint32_t bodies, uint32_t joints) {
@@ -139,15 +174,29 @@ void capture(const WorldData& world, SavedState& state) {
     state.last_h = world.last_h;
     state.time = world.time;
     state.steps = world.steps;
-    for (uint32_t slot : world.bodies.slots.order()) state.bodies.push_back(capture_body(world, slot));
+    SavedBody before;
+    for (uint32_t slot : world.bodies.slots.order()) {
+        state.bodies.push_back(capture_body(world, slot, before));
+        if (!state.bodies.back().fixed) before = state.bodies.back();
+        for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next)
+            capture_collider(world, c, state);
+    }
     for (uint32_t slot : world.joints.slots.order()) {
         const JointInfo& j = world.joints.info[slot];
         const bool has_axes = j.axes >= 0;
-        state.joints.push_back({j.motor, j.spring, joint_impulses(world, slot), has_axes,
-                                has_axes ? joint_axes_impulses(world, slot) : JointAxesInfo{}});
+        state.joints.push_back({j.limit, j.twist_limit, j.swing_limit, j.motor, j.spring, joint_impulses(world, slot),
+                                has_axes, has_axes ? joint_axes_impulses(world, slot) : JointAxesInfo{}});
     }
     state.boxes.append(world.moving_boxes.data(), world.moving_boxes.size());
     capture_pairs(world, state);
+    for (EndedTouch e : world.events.ended) {
+        for_each_handle(e.pair, without_world);
+        state.ended.push_back(e);
+    }
+    for (ContactHit hit : world.events.pending) {
+        for_each_handle(hit, without_world);
+        state.pending.push_back(hit);
+    }
 }
 
 std::vector<uint8_t> World::snapshot() const {

@@ -29,6 +29,7 @@ Result<World> World::fork(const WorldConfig& settings) const {
     to.colliders.copy(from.colliders);
     to.joints.copy(from.joints);
     to.has_extras = from.has_extras;
+    for (uint32_t c : to.colliders.slots.order()) set_asks(to, c, to.colliders.info[c].events);
     fill_defaults(to, from.config);
     SavedState state;
     capture(from, state);

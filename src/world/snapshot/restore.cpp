@@ -61,9 +61,11 @@ std::vector<const SavedBody*> owners(const WorldData& world, const SavedState& s
 Status check_bodies(const WorldData& world, const SavedState& state) {
     for (uint32_t i = 0; i < state.body_slots.count; ++i) {
         const SavedBody& b = state.bodies[i];
-        const BodyType type = world.bodies.info[world.bodies.slots.in_order(static_cast<int>(i))].type;
+        const BodyInfo& info = world.bodies.info[world.bodies.slots.in_order(static_cast<int>(i))];
+        const BodyType type = info.type;
+        if (!b.fixed && info.massless && !b.kinematic) return bad("takes a body without mass for a dynamic one");
         if (b.fixed != (type == BodyType::fixed)) return bad("takes a static body for a moving one");
-        bool good = b.fixed ? !b.mover : good_body(b) && (b.mover || b.asleep || type == BodyType::kinematic);
+        bool good = b.fixed ? !b.mover : good_body(b) && (b.mover || b.asleep || b.kinematic);
         if (!good) return bad("holds a body whose state cannot be");
     }
     return {};
@@ -74,6 +76,22 @@ Status check_joints(const WorldData& world, const SavedState& state) {
     for (uint32_t i = 0; i < state.joint_slots.count; ++i) {
         const JointInfo& j = world.joints.info[world.joints.slots.in_order(static_cast<int>(i))];
         if (state.joints[i].has_axes != (j.axes >= 0)) return bad("holds a joint that cannot be");
+    }
+    return {};
+}
+
+// One entry for each collider, or for several that follow each other, with coefficients that a material may have.
+Status check_colliders(const WorldData& world, const SavedState& state) {
+    uint64_t known = 0;
+    for (uint32_t count : state.alike) known += count;
+    if (state.alike.size() != state.colliders.size() || known != state.collider_slots.count)
+        return bad("holds another number of colliders than it says");
+    for (uint32_t count : state.alike)
+        if (count == 0) return bad("holds a collider that is none");
+    for (const SavedCollider& c : state.colliders) {
+        const bool rules = c.material.friction_combine <= CombineRule::multiply &&
+                           c.material.restitution_combine <= CombineRule::multiply && c.events <= Events::all;
+        if (!rules || !make_surface(world.config, c.material, "restore")) return bad("holds a material that cannot be");
     }
     return {};
 }
@@ -114,18 +132,29 @@ Status check_pairs(const WorldData& world, const SavedState& state) {
         before = &p;
     }
     if (contacts != state.contacts.size()) return bad("holds contacts of no pair");
+    for (const ContactHit& h : state.pending)
+        if (!is_finite(from_origin(h.position)) || !is_finite(h.normal) || !is_finite(h.speed) || !is_finite(h.impulse))
+            return bad("holds a hit that cannot be");
     for (const SavedContact& c : state.contacts)
         if (!good_contact(c)) return bad("holds a contact that cannot be");
     return {};
 }
 
-void apply_body(WorldData& world, uint32_t slot, const SavedBody& b) {
+// `drags`: what holds its damping and gravity factor.
+void apply_body(WorldData& world, uint32_t slot, const SavedBody& b, const SavedBody& drags) {
     BodyInfo& info = world.bodies.info[slot];
+    const BodyType type = b.kinematic ? BodyType::kinematic : BodyType::dynamic;
+    if (type != info.type) set_body_type(world, slot, type);
     world.bodies.pose[slot] = b.pose;
     world.bodies.momenta[slot] = b.momenta;
     world.bodies.change[slot] = b.change;
     world.bodies.forces[slot] = b.forces;
     info.still_time = b.still_time;
+    info.bullet = b.bullet, info.allow_sleep = b.allow_sleep;
+    info.linear_damping = drags.linear_damping, info.angular_damping = drags.angular_damping;
+    info.gravity_factor = drags.gravity_factor;
+    info.woken = b.woken;
+    if (b.woken) world.events.woken.push_back(slot);
     info.asleep = b.asleep, info.has_forces = b.has_forces;
     info.capped = b.capped, info.contained = b.contained, info.stopped = b.stopped;
     IslandLoad load{};
@@ -145,6 +174,8 @@ void apply_bodies(WorldData& world, const SavedState& state) {
     movers.bodies.clear();
     Array<uint32_t> colliders(&world.memory);
     size_t next = 0;
+    const SavedBody usual;
+    const SavedBody* drags = &usual;
     for (uint32_t slot : world.bodies.slots.order()) {
         const SavedBody& saved = state.bodies[next++];
         BodyInfo& info = world.bodies.info[slot];
@@ -152,7 +183,8 @@ void apply_bodies(WorldData& world, const SavedState& state) {
         info.mover_place = saved.mover ? static_cast<uint32_t>(movers.bodies.size()) : no_slot;
         if (saved.mover) movers.bodies.push_back(slot);
         else info.solver_index = static_body;
-        if (!saved.fixed) apply_body(world, slot, saved);
+        if (!saved.fixed && !saved.drags_alike) drags = &saved;
+        if (!saved.fixed) apply_body(world, slot, saved, *drags);
         for (uint32_t c = info.first_collider; c != no_slot; c = world.colliders.info[c].next) {
             world.at_rest[c] = saved.mover ? 0 : 1;
             colliders.push_back(c);
@@ -163,6 +195,22 @@ void apply_bodies(WorldData& world, const SavedState& state) {
     movers.leaving = movers.joints_changed = true;  // to be listed anew
 }
 
+// After bodies, before pairs are made.
+void apply_colliders(WorldData& world, const SavedState& state) {
+    size_t next = 0;
+    uint32_t left = state.alike.empty() ? 0 : state.alike[0];
+    for (uint32_t slot : world.bodies.slots.order())
+        for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next) {
+            while (left == 0) left = state.alike[++next];
+            --left;
+            const SavedCollider& saved = state.colliders[next];
+            world.colliders.info[c].filter = saved.filter;
+            world.query_scene.changed(c);
+            set_collider_material(world, c, saved.material);
+            set_asks(world, c, saved.events);
+        }
+}
+
 // The broad phase is to find all pairs anew, among the same boxes.
 void apply_boxes(WorldData& world, const SavedState& state) {
     world.moving_boxes.clear();
@@ -170,7 +218,7 @@ void apply_boxes(WorldData& world, const SavedState& state) {
     world.box_place.assign(world.frames.size(), no_box);
     for (size_t i = 0; i < state.boxes.size(); ++i) world.box_place[state.boxes[i].index] = static_cast<uint32_t>(i);
     for (Array<uint32_t>* list : {&world.changed_boxes, &world.forgotten}) list->clear();
-    world.rejoined.clear();
+    world.rejoined.clear(), world.refiltered.clear();
     world.fixed_changed = world.all_pairs_sought = true;
 }
 
@@ -180,12 +228,16 @@ void apply_joints(WorldData& world, const SavedState& state) {
     size_t next = 0;
     for (uint32_t slot : world.joints.slots.order()) {
         const SavedJoint& joint = state.joints[next++];
+        world.joints.info[slot].limit = joint.limit;
+        world.joints.info[slot].twist_limit = joint.twist_limit;
+        world.joints.info[slot].swing_limit = joint.swing_limit;
         world.joints.info[slot].motor = joint.motor;
         world.joints.info[slot].spring = joint.spring;
         world.joints.impulses[slot] = joint.impulses;
         if (world.joints.info[slot].axes < 0) continue;
         JointAxesInfo& axes = world.joints.axes[static_cast<size_t>(world.joints.info[slot].axes)];
         for (int i = 0; i < joint_coordinates; ++i) {
+            axes.row[i].limit = joint.axes.row[i].limit;
             axes.row[i].motor = joint.axes.row[i].motor;
             axes.row[i].spring = joint.axes.row[i].spring;
             axes.limit[i] = joint.axes.limit[i];
@@ -213,7 +265,7 @@ void apply_pair(WorldData& world, const SavedPair& saved, const SavedContact* co
     world.pairs.caches[number] = saved.cache;
     if (saved.kept) world.pairs.poses[number] = saved.pose;
     p.count = p.prepared = saved.contacts;
-    p.hit = saved.hit, p.begun = saved.begun;
+    p.hit = saved.hit, p.begun = saved.begun, p.touches = saved.touches;
     for (uint32_t k = 0; k < p.count; ++k) {
         ContactRecord& r = world.records[p.first_record + k];
         r = contacts[k].record;
@@ -253,6 +305,25 @@ void apply_pairs(WorldData& world, const SavedState& state) {
     list_contacts(world);
 }
 
+void apply_events(WorldData& world, const SavedState& state) {
+    EventData& e = world.events;
+    clear_events(e);
+    e.ended.clear(), e.pending.clear();
+    struct WithWorld {
+        const WorldData& world;
+        void operator()(BodyId& id) const { id.generation = world.bodies.slots.generation_after(id.generation); }
+        void operator()(ColliderId& id) const { id.generation = world.colliders.slots.generation_after(id.generation); }
+    };
+    for (EndedTouch touch : state.ended) {
+        for_each_handle(touch.pair, WithWorld{world});
+        e.ended.push_back(touch);
+    }
+    for (ContactHit hit : state.pending) {
+        for_each_handle(hit, WithWorld{world});
+        e.pending.push_back(hit);
+    }
+}
+
 }  // namespace
 
 Status check_saved(const WorldData& world, const SavedState& state) {
@@ -268,6 +339,7 @@ Status check_saved(const WorldData& world, const SavedState& state) {
         return bad("holds a time or a gravity that cannot be");
     if (Status s = check_bodies(world, state); !s) return s;
     if (Status s = check_joints(world, state); !s) return s;
+    if (Status s = check_colliders(world, state); !s) return s;
     if (Status s = check_boxes(world, state); !s) return s;
     return check_pairs(world, state);
 }
@@ -280,10 +352,13 @@ void apply(WorldData& world, const SavedState& state) {
     world.last_h = world.joints_h = state.last_h;
     world.time = state.time;
     world.steps = state.steps;
+    world.events.woken.clear(), world.events.fallen.clear();
     apply_bodies(world, state);
+    apply_colliders(world, state);
     apply_boxes(world, state);
     apply_joints(world, state);
     apply_pairs(world, state);
+    apply_events(world, state);
     world.query_scene.all_moved();
 }
 

@@ -23,6 +23,10 @@ struct SavedBody {
     BodyChange change{};
     BodyForces forces{};
     float still_time = 0.0f;
+    bool woken = false;
+    bool kinematic = false, bullet = false, allow_sleep = true;
+    bool drags_alike = false;  // the next three are those of the body before
+    float linear_damping = 0.0f, angular_damping = 0.0f, gravity_factor = 1.0f;
     bool fixed = false;  // a static body: nothing but `placed` is saved of it
     bool mover = false;
     bool asleep = false, has_forces = false, placed = false, capped = false, contained = false, stopped = false;
@@ -33,7 +37,16 @@ struct SavedBody {
     uint8_t substeps = 0, waited = 0, calm = 0;
 };
 
+// Whom a collider meets, what it is made of and what it reports.
+struct SavedCollider {
+    CollisionFilter filter{};
+    Material material{};
+    Events events = Events::none;
+};
+
 struct SavedJoint {
+    Limit limit{}, twist_limit{};
+    float swing_limit = 0.0f;
     Motor motor;
     Spring spring;
     JointImpulses impulses;
@@ -52,7 +65,7 @@ struct SavedContact {
 struct SavedPair {
     uint32_t a = 0, b = 0;  // collider slots
     uint8_t contacts = 0;   // of SavedState::contacts, in order
-    bool hit = false, begun = false;
+    bool hit = false, begun = false, touches = false;
     bool listed = true;
     float rest_h = 0.0f;  // where it is not listed
     PairCache cache;
@@ -69,10 +82,23 @@ struct SavedState {
     SavedSlots body_slots, collider_slots, joint_slots;
     Array<SavedBody> bodies;  // these two in creation order
     Array<SavedJoint> joints;
+    Array<SavedCollider>
+        colliders;          // in the order of bodies and their lists; those that differ from the one before ...
+    Array<uint32_t> alike;  // ... and for how many each stands
     Array<BroadBox> boxes;  // of moving colliders, as the broad phase knows them
     Array<SavedPair> pairs;
     Array<SavedContact> contacts;
+    // Events to be reported, their handles without the number of the world.
+    Array<EndedTouch> ended;
+    Array<ContactHit> pending;
 };
+
+// visit(id) for the handles of an event.
+template <class Event, class Visit>
+void for_each_handle(Event& event, Visit&& visit) {
+    visit(event.body_a), visit(event.body_b);
+    visit(event.collider_a), visit(event.collider_b);
+}
 
 // Hash of what the snapshot does not hold but depends on: settings, and the first bodies and joints by creation.
 uint64_t fingerprint(const WorldData& world, uint32_t bodies, uint32_t joints);

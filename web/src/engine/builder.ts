@@ -32,7 +32,7 @@ export interface JointDefinition {
     target: number;
 }
 
-const partBytes = 76, bodyBytes = 136, jointBytes = 120;
+const partBytes = 76, bodyBytes = 136, jointBytes = 128;
 const bytes = (array: Float32Array | Uint32Array) => new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
 
 export function addHull({ engine, handle }: PageWorld, points: Float32Array): number {

@@ -1,0 +1,183 @@
+// Changes of colliders and bodies while they live, and what follows from them for pairs and sleepers.
+#include "world/narrow/manifold_records.h"
+#include "world/validate.h"
+#include "world/world_data.h"
+
+namespace lendulet {
+namespace {
+
+// Calls visit(number) for all pairs of a collider and wakes the bodies of each before.
+template <class Visit>
+void wake_pairs_of(WorldData& world, uint32_t collider, Visit&& visit) {
+    wake_body(world, world.colliders.info[collider].body);
+    world.pairs.for_each_of(collider, [&](uint32_t number) {
+        const ColliderPair& p = world.pairs.pairs[number];
+        wake_body(world, p.body_a), wake_body(world, p.body_b);
+        visit(number);
+    });
+}
+
+// Removes an overlap that is not one any more from what the user reads.
+void forget_overlap(WorldData& world, const ColliderPair& p) {
+    if (!p.hit) return;
+    const ColliderId a = world.colliders.id(p.a), b = world.colliders.id(p.b);
+    size_t kept = 0;
+    for (const Overlap& o : world.overlaps)
+        if (!((o.trigger == a && o.other == b) || (o.trigger == b && o.other == a))) world.overlaps[kept++] = o;
+    world.overlaps.resize_unset(kept);
+    world.resting.hits_changed = true;
+}
+
+// Wakes what a collider lies in and may meet now.
+void wake_newly_met(WorldData& world, uint32_t collider) {
+    const Pose& pose = world.bodies.pose[world.colliders.info[collider].body];
+    const Transform& local = world.colliders.local[collider];
+    const CentredBox box = bounds(world.colliders.geometry[collider], pose.orientation * local.rotation);
+    const Vec3 centre = from_origin(pose * local.translation) + box.centre, low = centre - box.half,
+               high = centre + box.half;
+    const float lower[3] = {low.x, low.y, low.z}, upper[3] = {high.x, high.y, high.z};
+    world.query_scene.refresh(world);
+    world.query_scene.overlapping(lower, upper, [&](uint32_t other) {
+        const BoxPair p{collider < other ? collider : other, collider < other ? other : collider};
+        if (other == collider || !wanted(world, p) || world.pairs.find(p.a, p.b) != no_pair) return;
+        wake_body(world, world.colliders.info[other].body);
+    });
+}
+
+// Surfaces of a pair's contacts after a material has changed.
+void renew_surfaces(WorldData& world, ColliderPair& p) {
+    if (p.kind == PairKind::trigger) return;
+    const ColliderStore& c = world.colliders;
+    p.bounces = p.kind == PairKind::boxes && combine(c.surface[p.a], c.surface[p.b]).restitution > 0.0f;
+    for (uint32_t i = p.first_record; i < p.first_record + p.prepared; ++i) renew_surface(world, p, world.records[i]);
+}
+
+// A body of another type: pairs are made anew, with what events know of them.
+void renew_pairs_of(WorldData& world, uint32_t collider) {
+    Array<BoxPair> colliders(&world.memory);
+    world.pairs.for_each_of(collider, [&](uint32_t number) {
+        const ColliderPair& p = world.pairs.pairs[number];
+        if (p.kind != PairKind::trigger) colliders.push_back({p.a, p.b});
+    });
+    for (const BoxPair& c : colliders) {
+        const uint32_t number = world.pairs.find(c.a, c.b);
+        ColliderPair& p = world.pairs.pairs[number];
+        const bool touches = p.touches, want = wanted(world, c);
+        if (want) p.touches = false;  // nothing ends
+        forget_pair(world, number);
+        if (want) world.pairs.pairs[begin_pair(world, c)].touches = touches;
+    }
+    wake_newly_met(world, collider);
+    world.refiltered.push_back(collider);
+}
+
+}  // namespace
+
+void set_body_type(WorldData& world, uint32_t slot, BodyType type) {
+    world.bodies.set_type(slot, type);
+    if (slot < world.island_loads.size()) world.island_loads[slot] = {};
+    for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next)
+        world.query_scene.changed(c);
+    world.continuous.colliders_changed = true;
+    world.movers.joints_changed = world.joints_changed = world.joint_groups_changed = true;
+}
+
+Status RigidBodyRef::set_type(BodyType type) {
+    constexpr const char* call = "set_type";
+    const BodyInfo& info = world_->bodies.info[slot_];
+    if (type != BodyType::dynamic && type != BodyType::kinematic)
+        return Error{ErrorCode::bad_collider, std::string(call) + ": a body that moves cannot become static"};
+    if (type == info.type) return {};
+    if (info.massless)
+        return Error{ErrorCode::bad_mass, std::string(call) + ": it was added as kinematic, without mass"};
+    const BodyMass& mass = world_->bodies.mass_as_dynamic(slot_);
+    if (!is_finite(mass.mass * velocity()) || !is_finite(max_component(mass.inertia) * angular_velocity()))
+        return Error{ErrorCode::non_finite, std::string(call) + ": momentum and angular momentum must be finite"};
+    wake();
+    wake_touching(*world_, slot_);
+    world_->joints.for_each_of(slot_, [&](uint32_t joint) {
+        wake_body(*world_, world_->joints.info[joint].body_a);
+        wake_body(*world_, world_->joints.info[joint].body_b);
+    });
+    set_body_type(*world_, slot_, type);
+    for (uint32_t c = info.first_collider; c != no_slot; c = world_->colliders.info[c].next) renew_pairs_of(*world_, c);
+    return {};
+}
+
+void set_collider_filter(WorldData& world, uint32_t collider, const CollisionFilter& filter) {
+    world.colliders.info[collider].filter = filter;
+    world.query_scene.changed(collider);
+    wake_pairs_of(world, collider, [&](uint32_t number) {
+        const ColliderPair& p = world.pairs.pairs[number];
+        if (wanted(world, {p.a, p.b})) return;
+        forget_overlap(world, p);
+        forget_pair(world, number);
+    });
+    wake_newly_met(world, collider);
+    world.refiltered.push_back(collider);
+}
+
+void set_collider_material(WorldData& world, uint32_t collider, const Material& material) {
+    ColliderStore& c = world.colliders;
+    c.material[collider] = material;
+    c.surface[collider] = with_defaults(material, world.config.friction, world.config.restitution);
+    world.has_extras |= c.surface[collider].has_extra();
+}
+
+Status World::set_filter(ColliderId id, const CollisionFilter& filter) {
+    WorldData& world = *data_;
+    if (!world.colliders.alive(id)) return no_such(world.colliders.slots, id.generation, "set_filter", "collider");
+    set_collider_filter(world, id.index, filter);
+    return {};
+}
+
+Status World::set_material(ColliderId id, const Material& material) {
+    constexpr const char* call = "set_material";
+    WorldData& world = *data_;
+    if (!world.colliders.alive(id)) return no_such(world.colliders.slots, id.generation, call, "collider");
+    if (!world.colliders.materials[id.index].empty())
+        return Error{ErrorCode::bad_collider, std::string(call) + ": its triangles have materials of their own"};
+    Result<Surface> surface = make_surface(world.config, material, call);
+    if (!surface) return surface.error();
+    set_collider_material(world, id.index, material);
+    wake_pairs_of(world, id.index, [&](uint32_t number) { renew_surfaces(world, world.pairs.pairs[number]); });
+    return {};
+}
+
+Status World::set_events(ColliderId id, Events events) {
+    WorldData& world = *data_;
+    if (!world.colliders.alive(id)) return no_such(world.colliders.slots, id.generation, "set_events", "collider");
+    set_asks(world, id.index, events);
+    wake_pairs_of(world, id.index, [&](uint32_t number) {
+        ColliderPair& p = world.pairs.pairs[number];
+        p.touches = p.touches && (world.events.asks[p.a] | world.events.asks[p.b]) != 0;
+    });
+    return {};
+}
+
+Status RigidBodyRef::set_damping(float linear, float angular) {
+    BodyInfo& info = world_->bodies.info[slot_];
+    if (Status s = check_drag(linear, angular, info.gravity_factor, "set_damping"); !s) return s;
+    info.linear_damping = linear, info.angular_damping = angular;
+    wake();
+    return {};
+}
+Status RigidBodyRef::set_gravity_factor(float factor) {
+    BodyInfo& info = world_->bodies.info[slot_];
+    if (Status s = check_drag(info.linear_damping, info.angular_damping, factor, "set_gravity_factor"); !s) return s;
+    info.gravity_factor = factor;
+    wake();
+    return {};
+}
+void RigidBodyRef::set_bullet(bool bullet) { world_->bodies.info[slot_].bullet = bullet; }
+void RigidBodyRef::set_allow_sleep(bool allow) {
+    world_->bodies.info[slot_].allow_sleep = allow;
+    if (!allow) wake();
+}
+float RigidBodyRef::linear_damping() const { return world_->bodies.info[slot_].linear_damping; }
+float RigidBodyRef::angular_damping() const { return world_->bodies.info[slot_].angular_damping; }
+float RigidBodyRef::gravity_factor() const { return world_->bodies.info[slot_].gravity_factor; }
+bool RigidBodyRef::bullet() const { return world_->bodies.info[slot_].bullet; }
+bool RigidBodyRef::allow_sleep() const { return world_->bodies.info[slot_].allow_sleep; }
+
+}  // namespace lendulet
