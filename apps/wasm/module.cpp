@@ -12,4 +12,4 @@ static_assert(sizeof(lendulet_statistics) == 168 && offsetof(lendulet_statistics
 static_assert(sizeof(lendulet_mesh) == 8 + 2 * sizeof(void*));
 static_assert(sizeof(lendulet_settings) == 64 && sizeof(lendulet_joint_state) == 120 && sizeof(lendulet_box) == 32 &&
               sizeof(lendulet_group) == 8 && sizeof(lendulet_motion) == 48 && sizeof(lendulet_part) == 76 &&
-              sizeof(lendulet_body_definition) == 136 && sizeof(lendulet_joint_definition) == 120);
+              sizeof(lendulet_body_definition) == 136 && sizeof(lendulet_joint_definition) == 128);

@@ -107,8 +107,7 @@ bool alike(const Material& x, const Material& y) {
            x.friction_combine == y.friction_combine && x.restitution_combine == y.restitution_combine;
 }
 bool alike(const SavedCollider& x, const SavedCollider& y) {
-    return x.filter.category == y.filter.category && x.filter.mask == y.filter.mask &&
-           x.filter.group == y.filter.group && x.events == y.events && alike(x.material, y.material);
+    return alike(x.filter, y.filter) && x.events == y.events && alike(x.material, y.material);
 }
 
 void capture_collider(const WorldData& world, uint32_t slot, SavedState& state) {

@@ -204,8 +204,8 @@ void apply_colliders(WorldData& world, const SavedState& state) {
             while (left == 0) left = state.alike[++next];
             --left;
             const SavedCollider& saved = state.colliders[next];
+            if (!alike(world.colliders.info[c].filter, saved.filter)) world.query_scene.changed(c);
             world.colliders.info[c].filter = saved.filter;
-            world.query_scene.changed(c);
             set_collider_material(world, c, saved.material);
             set_asks(world, c, saved.events);
         }

@@ -93,6 +93,10 @@ struct SavedState {
     Array<ContactHit> pending;
 };
 
+inline bool alike(const CollisionFilter& x, const CollisionFilter& y) {
+    return x.category == y.category && x.mask == y.mask && x.group == y.group;
+}
+
 // visit(id) for the handles of an event.
 template <class Event, class Visit>
 void for_each_handle(Event& event, Visit&& visit) {
