@@ -272,6 +272,8 @@ void pack_extras(WorldData& world, float dt);
 // Returns what the solver may keep of the last step.
 JointReuse pack_joints(WorldData& world, float h);
 void unpack_bodies(WorldData& world, float dt, bool forces_end);
+// Puts back and stops the islands of the bodies that are marked as contained; from unpack_bodies().
+void contain_islands(WorldData& world);
 void stop_at_impacts(WorldData& world, float dt);
 void finish_step(WorldData& world, float dt);
 
