@@ -63,7 +63,7 @@ struct alignas(64) IslandLoad {
     bool meets_moving = false;            // has a contact with another dynamic body
     bool in_group = false;                // in one of WorldData::joint_groups
     bool held = false;                    // rests on a contact that carries already
-    bool slept = false;                   // has slept since, and goes on from here when it wakes
+    bool slept = false;                   // sleeps, and goes on from here when it wakes
     bool moves = false, slow = false;
     bool touches = false;  // is in contact
     // Of a root's island.
