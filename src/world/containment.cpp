@@ -80,6 +80,11 @@ void contain_islands(WorldData& world) {
         if (contained(j.body_a, j.body_b)) forget_joint(world, world.joint_records[i]);
     }
     world.joints_changed = true;  // the solver's rows hold what they held: they are made anew
+    world.statistics.capped_bodies = world.statistics.contained_bodies = 0;
+    for (uint32_t slot : world.awake) {
+        world.statistics.capped_bodies += bodies.info[slot].capped;
+        world.statistics.contained_bodies += bodies.info[slot].contained;
+    }
 }
 
 }  // namespace lendulet

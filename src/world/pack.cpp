@@ -240,6 +240,7 @@ void unpack_bodies(WorldData& world, float dt, bool forces_end) {
     Array<Pose>& start = world.continuous.start;
     start.resize_unset(static_cast<size_t>(world.solver_bodies.count - reserved_bodies));
     const Vec3 gravity = plain_gravity(world, dt);
+    std::atomic<int> capped{0};
     std::atomic<bool> any_contained{false};
     world.tasks.for_each(list.count(), bodies_per_task, [&](int begin, int end, int) {
         UnpackBatch batch;
@@ -254,15 +255,13 @@ void unpack_bodies(WorldData& world, float dt, bool forces_end) {
             const uint32_t slot = list[static_cast<size_t>(i)];
             BodyInfo& info = bodies.info[slot];
             if (forces_end && info.has_forces) bodies.forces[slot] = {}, info.has_forces = false;
+            if (info.capped) capped.fetch_add(1, std::memory_order_relaxed);
             if (info.contained) any_contained.store(true, std::memory_order_relaxed);
         }
     });
+    world.statistics.capped_bodies = capped.load(std::memory_order_relaxed);
+    world.statistics.contained_bodies = 0;
     if (any_contained.load(std::memory_order_relaxed)) contain_islands(world);
-    world.statistics.capped_bodies = world.statistics.contained_bodies = 0;
-    for (uint32_t slot : list) {
-        world.statistics.capped_bodies += bodies.info[slot].capped;
-        world.statistics.contained_bodies += bodies.info[slot].contained;
-    }
 }
 
 }  // namespace lendulet

@@ -113,15 +113,6 @@ LENDULET_FORCE_INLINE Wide<float, W> axis_curvature(int j, const SixRow<W>& c, c
     return maximum(minimum(half_h * curvature, most), zero - most);
 }
 
-// A turn that is far beyond its bounds came there where it was not known, and is brought back with 1 rad/s at 480
-// substeps a second: at the speed of other gaps that would be a motor.
-template <class Row, class F>
-LENDULET_FORCE_INLINE F bounded_coordinate(int j, const Row& row, F x) {
-    const F far = splat<F>(0.5f), near = splat<F>(0.01f);
-    if (j < 3 || j >= distance_row) return x;
-    return select(x > row.upper + far, row.upper + near, select(x < row.lower - far, row.lower - near, x));
-}
-
 // One row: what its impulse changes.
 template <int W, bool biased>
 LENDULET_FORCE_INLINE Wide<float, W> solve_axis(int j, SixRow<W>& c, const SixGeometry<W>& o, Wide<float, W> rate,
@@ -134,8 +125,8 @@ LENDULET_FORCE_INLINE Wide<float, W> solve_axis(int j, SixRow<W>& c, const SixGe
     F v = dot(o.direction[j], is_linear_row(j) ? sliding : p.turning());
     F change = solve_springs<W, biased>(row, k, split, c.relaxation, rate, o.coordinate[j], v);
     change = change + solve_motor<W>(row, k, split, c.relaxation, rate, v + rate * change);
-    SpeedRange<F> range =
-        speed_range<biased>(row, bounded_coordinate(j, row, o.coordinate[j]), bias_of(c, k, split), k);
+    const F coordinate = j < 3 || j >= distance_row ? o.coordinate[j] : near_bounds(row, o.coordinate[j]);
+    SpeedRange<F> range = speed_range<biased>(row, coordinate, bias_of(c, k, split), k);
     F speed = v + rate * change;
     if constexpr (biased) speed = speed + axis_curvature<W>(j, c, o, p, k, sliding);
     F held = row.limit, pushed = solve_limit<biased>(row, range, rate, c.leak, c.relaxation, speed);
