@@ -113,7 +113,7 @@ struct StepStatistics {
     int flowing_bodies;     // ... and of large islands in motion, which took half of them
     float max_penetration;  // deepest overlap after the step, m
     int capped_bodies;      // bodies whose speed was cut to the limit
-    int contained_bodies;   // bodies whose state went non-finite, was put back and stopped
+    int contained_bodies;   // bodies that were put back and stopped: the state of one in their island went non-finite
     int stopped_bodies;     // fast bodies that were put where they met what they would have passed through
     size_t bytes_per_body, bytes_per_manifold;
 };

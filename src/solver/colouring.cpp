@@ -55,7 +55,7 @@ void ColourSorter::add(int32_t a, bool moved_a, int32_t b, bool moved_b, int con
         colour = free_colour(used, fixed_colours);
         if (colour >= 0) used |= 1u << colour, colour += moving_colours;
     }
-    if (colour < 0) colour = overflow_colour, place = 0;
+    if (colour < 0) colour = moved_a && moved_b ? moving_overflow : fixed_overflow, place = 0;
     keys_.push_back(static_cast<uint32_t>(((tile * colours + colour) * classes_ + constraint_class) * order_ + place));
     ++counts_[keys_.back() + 1u];
 }
@@ -104,8 +104,8 @@ void ColourSchedule::make_groups(const ColourSorter& sorter, ContactExtra* extra
         if (count == 0) return;
         ContactGroup g{};
         g.points = 4 >> (c % size_classes);
-        g.alone = colour == ColourSorter::overflow_colour;
-        g.fixed_a = colour >= ColourSorter::moving_colours && !g.alone;
+        g.alone = ColourSorter::overflows(colour);
+        g.fixed_a = ColourSorter::is_fixed(colour);
         g.filler = outside ? c : tiles.filler(tile);
         g.colour = number;
         g.count = count;

@@ -4,7 +4,7 @@
 // Greedy in the order of the list, lowest free colour first (Welsh, Powell 1967, without sorting). Constraints with a
 // static or kinematic body have colours of their own, solved last in every pass: what rests on the ground is then as
 // exact as an iteration can leave it. Constraints that find no free colour (a body with very many neighbours) overflow
-// and are solved one by one.
+// and are solved one by one, of either kind for themselves: what cannot be moved is never stored to.
 //
 // Many bodies are cut into tiles that fit into the second-level cache with their constraints. Constraints inside a tile
 // are coloured for the tile alone, which one thread solves from end to end; those between two tiles are coloured
@@ -29,7 +29,11 @@ inline size_t block_count(uint32_t n, int width) {
 class ColourSorter {
 public:
     static constexpr int moving_colours = 32, fixed_colours = 16;
-    static constexpr int overflow_colour = moving_colours + fixed_colours, colours = overflow_colour + 1;
+    static constexpr int moving_overflow = moving_colours + fixed_colours, fixed_overflow = moving_overflow + 1;
+    static constexpr int colours = fixed_overflow + 1;
+    static constexpr bool overflows(int colour) { return colour >= moving_overflow; }
+    // Whether the constraints of a colour move only one of their bodies.
+    static constexpr bool is_fixed(int colour) { return colour >= moving_colours && colour != moving_overflow; }
 
     explicit ColourSorter(const Memory* memory)
         : used_inside_(memory), used_between_(memory), used_fixed_(memory), keys_(memory), counts_(memory) {}

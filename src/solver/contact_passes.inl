@@ -38,9 +38,9 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
     F size2 = f1 * f1 + f2 * f2;
     auto slides = size2 > sticking * sticking;
     // Without load nothing sticks, also where the square of what slides is too small a number.
-    F keeps = select(slides, zero, select(total > zero, one, zero));
+    auto keeps = select(slides, zero, select(total > zero, one, zero)) > zero;
     auto drags = select(slides, sliding, zero) > zero;
-    F held1 = keeps * f1, held2 = keeps * f2;
+    F held1 = select(keeps, f1, zero), held2 = select(keeps, f2, zero);
     if (mask_bits(drags)) {
         const F tangential[3] = {m[0], m[1], P > 1 ? m[3] : m[2]};
         F cut1 = f1, cut2 = f2;

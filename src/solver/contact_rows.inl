@@ -317,6 +317,22 @@ LENDULET_FORCE_INLINE F turns_freely(const SymMat3T<F>& I, Vec3T<F> arm, Vec3T<F
     return select(I.xx > zero, is, one);
 }
 
+// The share of what the contacts held in the last step with which they begin this one, see most_held_speed.
+template <int W, int P>
+LENDULET_FORCE_INLINE Wide<float, W> share_kept(const ContactRow<W, P>& c) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f), most = splat<F>(most_held_speed);
+    F excess = zero;
+    for (int j = 0; j < P; ++j) excess = maximum(c.p[j].impulse - most * c.p[j].mass, excess);
+    if (mask_bits(excess > zero) == 0) return one;
+    F over = one;
+    for (int j = 0; j < P; ++j) {
+        const F held = most * c.p[j].mass;
+        over = maximum(over, select(c.p[j].impulse > held, c.p[j].impulse / held, one));
+    }
+    return one / over;
+}
+
 template <int W, int P>
 LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& group, const ContactRecord* records,
                                        const SolverBodies& bodies, int first) {
@@ -376,10 +392,12 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     }
     prepare_normals<W, P>(c, c.ra, c.rb, IA, IB, inverse_masses);
     prepare_friction<W, P>(c, c.ra, c.rb, IA, IB, inverse_masses);
-    const Vec3T<F> f = unit * Vec3T<F>{m.friction[0], m.friction[1], m.friction[2]};
+    const F kept = share_kept<W, P>(c);
+    for (int j = 0; j < P; ++j) c.p[j].impulse = kept * c.p[j].impulse;
+    const Vec3T<F> f = (kept * unit) * Vec3T<F>{m.friction[0], m.friction[1], m.friction[2]};
     c.friction.tangent[0] = dot(f, c.t1);
     c.friction.tangent[1] = dot(f, cross(c.n, c.t1));
-    if constexpr (P > 1) c.friction.twist = unit * m.friction[3];
+    if constexpr (P > 1) c.friction.twist = (kept * unit) * m.friction[3];
     for (int l = live; l < W; ++l) {  // empty lanes never push
         for (int j = 0; j < P; ++j) set_lane(c.p[j].impulse, l, 0.0f), set_lane(c.p[j].mass, l, 0.0f);
         set_lane(c.friction.tangent[0], l, 0.0f), set_lane(c.friction.tangent[1], l, 0.0f);

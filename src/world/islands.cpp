@@ -165,6 +165,11 @@ void wake_body(WorldData& world, uint32_t slot) {
     note_woken(world, slot);
     info.asleep = false;
     info.still_time = 0.0f;
+    if (slot < world.island_loads.size() && world.island_loads[slot].slept) {
+        // It goes on from what it slept with, if it is in contact at once.
+        world.island_loads[slot].slept = false;
+        world.island_loads[slot].step = world.steps;
+    }
     add_mover(world, slot);
 }
 

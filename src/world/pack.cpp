@@ -144,9 +144,8 @@ void set_lane(UnpackBatch& batch, int i, const WorldData& world, uint32_t slot, 
     put(batch.gain, i, gain);
 }
 
-// Cuts a speed that may be too large; a body whose state is not finite is put back and stopped, so that it cannot spoil
-// others.
-void contain(WorldData& world, uint32_t slot, const Pose& before) {
+// Cuts a speed that may be too large, and tells whether the body's state is finite.
+void examine(WorldData& world, uint32_t slot) {
     BodyStore& bodies = world.bodies;
     BodyInfo& info = bodies.info[slot];
     info.capped |= info.type == BodyType::dynamic && cap_speed(bodies, slot);
@@ -154,10 +153,6 @@ void contain(WorldData& world, uint32_t slot, const Pose& before) {
     const Pose& pose = bodies.pose[slot];
     info.contained = !(is_finite(from_origin(pose.position)) && is_finite(m.p) && is_finite(m.L) &&
                        dot(pose.orientation, pose.orientation) < 2.0f);
-    if (!info.contained) return;
-    bodies.pose[slot] = before;
-    bodies.momenta[slot] = {};
-    bodies.change[slot] = {};
 }
 
 }  // namespace
@@ -206,53 +201,6 @@ void pack_contacts(WorldData& world) {
 
 namespace {
 
-bool all_finite(const float* x, int count) {
-    float sum = 0.0f;
-    for (int i = 0; i < count; ++i) sum += x[i];
-    return is_finite(sum);
-}
-
-// Where one impulse of a joint is no number none of its others is to be trusted.
-void forget_joint_impulses(WorldData& world) {
-    for (JointRecord& r : world.joint_records) {
-        const float held[] = {r.limit_0, r.limit_1, r.motor, r.spring};
-        bool finite = all_finite(r.linear, 3) && all_finite(r.angular, 3) && all_finite(held, 4) &&
-                      all_finite(r.impulse, 3) && all_finite(r.angular_impulse, 3);
-        JointAxesRecord* axes =
-            r.type == JointClass::six_degrees ? &world.joint_axes[static_cast<size_t>(r.axes)] : nullptr;
-        for (int k = 0; axes && k < joint_axes; ++k) {
-            const JointAxisRecord& x = axes->axis[k];
-            finite = finite && is_finite(x.limit + x.motor + x.spring);
-        }
-        if (finite) continue;
-        for (float* x : {r.linear, r.angular, r.impulse, r.angular_impulse}) x[0] = x[1] = x[2] = 0.0f;
-        r.limit_0 = r.limit_1 = r.motor = r.spring = 0.0f;
-        for (int k = 0; axes && k < joint_axes; ++k) {
-            JointAxisRecord& x = axes->axis[k];
-            x.limit = x.motor = x.spring = 0.0f;
-        }
-    }
-}
-
-// What held a body whose state had to be put back is no number to begin the next step with.
-void forget_impulses(WorldData& world) {
-    forget_joint_impulses(world);
-    for (uint32_t i : world.active) {
-        ContactRecord& r = world.records[i];
-        float sum = r.twist_impulse;
-        for (float x : r.normal_impulse) sum += x;
-        for (float x : r.friction_impulse) sum += x;
-        if (!is_finite(sum)) clear_impulses(r);
-        if ((r.flags & contact_rolls) == 0) continue;
-        float* turning = world.extras[i].impulse;
-        if (!all_finite(turning, 3)) turning[0] = turning[1] = turning[2] = 0.0f;
-    }
-}
-
-}  // namespace
-
-namespace {
-
 // Whether a body goes by the chosen reference integrator: nothing constrains it.
 bool flies(const WorldData& world, uint32_t slot) {
     const BodyInfo& info = world.bodies.info[slot];
@@ -275,12 +223,12 @@ void unpack_batch(WorldData& world, const uint32_t* slots, int count, Vec3 gravi
         bodies.info[slot].contained = false;
         const bool flown = flies(world, slot);
         if (!flown && !(batch.doubtful[i] > 0.0f)) continue;
-        const Pose& before = batch.before[batch.place[i] - reserved_bodies];
         if (flown) {
-            bodies.pose[slot] = before, bodies.momenta[slot] = momenta[i], bodies.change[slot] = changes[i];
+            bodies.pose[slot] = batch.before[batch.place[i] - reserved_bodies];
+            bodies.momenta[slot] = momenta[i], bodies.change[slot] = changes[i];
             fly(world, slot, dt);
         }
-        contain(world, slot, before);
+        examine(world, slot);
     }
 }
 
@@ -292,7 +240,8 @@ void unpack_bodies(WorldData& world, float dt, bool forces_end) {
     Array<Pose>& start = world.continuous.start;
     start.resize_unset(static_cast<size_t>(world.solver_bodies.count - reserved_bodies));
     const Vec3 gravity = plain_gravity(world, dt);
-    std::atomic<int> capped{0}, contained{0};
+    std::atomic<int> capped{0};
+    std::atomic<bool> any_contained{false};
     world.tasks.for_each(list.count(), bodies_per_task, [&](int begin, int end, int) {
         UnpackBatch batch;
         batch.bodies = columns(bodies);
@@ -307,12 +256,12 @@ void unpack_bodies(WorldData& world, float dt, bool forces_end) {
             BodyInfo& info = bodies.info[slot];
             if (forces_end && info.has_forces) bodies.forces[slot] = {}, info.has_forces = false;
             if (info.capped) capped.fetch_add(1, std::memory_order_relaxed);
-            if (info.contained) contained.fetch_add(1, std::memory_order_relaxed);
+            if (info.contained) any_contained.store(true, std::memory_order_relaxed);
         }
     });
     world.statistics.capped_bodies = capped.load(std::memory_order_relaxed);
-    world.statistics.contained_bodies = contained.load(std::memory_order_relaxed);
-    if (world.statistics.contained_bodies > 0) forget_impulses(world);
+    world.statistics.contained_bodies = 0;
+    if (any_contained.load(std::memory_order_relaxed)) contain_islands(world);
 }
 
 }  // namespace lendulet

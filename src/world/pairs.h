@@ -51,6 +51,11 @@ struct ColliderPair {
     float rest_h;  // of a pair that rests: the substep that its impulses belong to, s
 };
 
+// Whether the pair's manifolds are kept while its bodies barely move.
+inline bool may_be_kept(const ColliderPair& p) { return p.kind == PairKind::general || p.kind == PairKind::boxes; }
+// Whether the separations of its manifolds as they were found are known; floors have seams, see seams.cpp.
+inline bool has_found_separations(const ColliderPair& p) { return may_be_kept(p) || p.fixed_a; }
+
 struct ListedPair {
     uint32_t a, b, pair;
 };

@@ -64,7 +64,7 @@ struct alignas(64) IslandLoad {
     bool meets_moving = false;            // has a contact with another dynamic body
     bool in_group = false;                // in one of WorldData::joint_groups
     bool held = false;                    // rests on a contact that carries already
-    bool slept = false;                   // has slept since, and goes on from here when it wakes
+    bool slept = false;                   // sleeps, and goes on from here when it wakes
     bool moves = false, slow = false;
     bool touches = false;  // is in contact
     // Of a root's island.
@@ -277,6 +277,8 @@ void pack_extras(WorldData& world, float dt);
 // Returns what the solver may keep of the last step.
 JointReuse pack_joints(WorldData& world, float h);
 void unpack_bodies(WorldData& world, float dt, bool forces_end);
+// Puts back and stops the islands of the bodies that are marked as contained; from unpack_bodies().
+void contain_islands(WorldData& world);
 void stop_at_impacts(WorldData& world, float dt);
 // Makes events of what the step did.
 void report_events(WorldData& world);

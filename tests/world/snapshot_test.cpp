@@ -120,6 +120,43 @@ TEST(Snapshot, HoldsGravityForcesMotorsAndOverlaps) {
     EXPECT_EQ(world.hash(), expected);
 }
 
+// A body that woke without a contact has forgotten the substeps that it slept with, whether it was saved since or not.
+TEST(Snapshot, HoldsWhatBodiesRememberThatWokeInTheAir) {
+    World world = WorldBuilder{}.build().value();
+    add_floor(world);
+    BodyId cube = add_cube(world, 0.0f, 0);
+    run(world, 120);
+    ASSERT_TRUE(world.get(cube).asleep());
+    world.get(cube).set_pose({0.0f, 2.0f, 0.0f}, {}).value();
+    run(world, 3);
+    World fork = world.fork().value();
+    for (int step = 0; step < 60; ++step) {
+        ASSERT_EQ(fork.snapshot(), world.snapshot()) << step;
+        run(world, 1);
+        run(fork, 1);
+    }
+}
+
+// Bytes tell of room that nobody has written to, which hashes do not.
+TEST(Snapshot, OfCapsulesThatTouchIsTheSameForAllWidths) {
+    auto make = [](int width, int workers) {
+        World world = WorldBuilder{}.width(width).workers(workers).build().value();
+        add_floor(world);
+        for (int i = 0; i < 24; ++i) {
+            const float x = 0.25f * static_cast<float>(i % 5), y = 0.3f + 0.3f * static_cast<float>(i / 5);
+            world.add_rigid_body({.shape = Capsule{0.2f, 0.15f}, .position = {x, y, 0.01f * static_cast<float>(i)}})
+                .value();
+        }
+        return world;
+    };
+    World world = make(1, 1), wide = make(16, 2);
+    for (int step = 0; step < 30; ++step) {
+        run(world, 1);
+        run(wide, 1);
+        ASSERT_EQ(wide.snapshot(), world.snapshot()) << step;
+    }
+}
+
 // Servos: springs whose targets are set again as the world goes.
 TEST(Snapshot, HoldsSprings) {
     for (JointType type : {JointType::hinge, JointType::slider, JointType::distance, JointType::six_degrees}) {

@@ -148,7 +148,8 @@ LENDULET_FORCE_INLINE void find_axes(JointGeometry<W, C>& o, const JointRow<W, C
         Vec3T<F> xb = rotation_matrix<F>(qb, one).x, swing = cross(axes.x, xb);
         F size = length(swing);
         o.direction[0] = select(size > splat<F>(1e-6f), (one / maximum(size, splat<F>(1e-6f))) * swing, axes.y);
-        o.direction[1] = (one / maximum(one + dot(axes.x, xb), splat<F>(0.02f))) * (axes.x + xb);
+        const F known = one + dot(axes.x, xb), least = splat<F>(2.0f * least_turn_known);
+        o.direction[1] = select(known > least, (one / maximum(known, least)) * (axes.x + xb), zero_vector<F>());
         o.coordinate[0] = two * arc_tangent2<F>(square_root(q.y * q.y + q.z * q.z), square_root(q.x * q.x + q.w * q.w));
     } else {
         o.direction[0] = axes.y;

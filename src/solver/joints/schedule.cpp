@@ -139,7 +139,7 @@ void JointSchedule::colour(const JointRecord* records, int count, const SolverBo
     first_overflow_group = -1;
     size_t bytes = 0;
     sorter_.for_each_group([&](int, int colour, int c, uint32_t begin, uint32_t n) {
-        bool overflows = colour == ColourSorter::overflow_colour;
+        bool overflows = ColourSorter::overflows(colour);
         if (overflows && first_overflow_group < 0) first_overflow_group = groups.count();
         groups.push_back(group_of(c / (side_kinds * modes), c / modes % side_kinds, c % modes == 1, static_cast<int>(n),
                                   order.data() + begin, bytes, overflows ? scalar_table : table));

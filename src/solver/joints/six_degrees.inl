@@ -38,6 +38,10 @@ LENDULET_FORCE_INLINE Vec3T<F> direction_of(Vec3T<F> v, F size) {
     return scale * v;
 }
 
+// Square of the cosine of half the angle between an axis on A and on B, below which the turn about it is not known: 154
+// degrees.
+inline constexpr float least_turn_known = 0.05f;
+
 // Turn about axis i as the locked or the bounded row has it.
 template <int W>
 LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> turning_axis(SixGeometry<W>& o, const SixRow<W>& c, int i,
@@ -50,18 +54,21 @@ LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> turning_axis(SixGeometry<W>& o, cons
     Vec3T<F> locked = c.cosine[i] * (q.w * e + across) + c.sine[i] * v;
     auto holds = c.locked[3 + i] > zero;
     if ((c.used >> (3 + i) & 1) == 0) return select(holds, locked, zero_vector<F>());
-    F size = one / maximum(q.w * q.w + x * x, splat<F>(0.02f));
-    Vec3T<F> bounded = size * (q.w * (q.w * e + across) + x * v);
+    auto& row = c.row[3 + i];
+    // Where the axis has swung round to the other side there is no telling how far it is turned about: the turn jumps,
+    // and bounds that followed it would drive the bodies.
+    const F known = q.w * q.w + x * x;
+    Vec3T<F> bounded = (one / maximum(known, splat<F>(least_turn_known))) * (q.w * (q.w * e + across) + x * v);
+    auto told = (row.used > zero) & (known > splat<F>(least_turn_known));
     auto turned = q.w < zero;
     F angle = two * arc_tangent2<F>(select(turned, zero - x, x), select(turned, zero - q.w, q.w));
     // Whole turns are counted from the middle of the bounds, so that a range may reach beyond half a turn.
-    auto& row = c.row[3 + i];
     auto ranged = row.upper - row.lower < splat<F>(unlimited);
     F middle = select(ranged, splat<F>(0.5f) * (row.lower + row.upper), zero), whole = splat<F>(2.0f * pi);
     F from = angle - middle;
     o.coordinate[3 + i] =
         select(from > splat<F>(pi), angle - whole, select(from < splat<F>(-pi), angle + whole, angle));
-    return select(holds, locked, select(row.used > zero, bounded, zero_vector<F>()));
+    return select(holds, locked, select(told, bounded, zero_vector<F>()));
 }
 
 template <int W>

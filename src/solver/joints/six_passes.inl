@@ -120,13 +120,13 @@ LENDULET_FORCE_INLINE Wide<float, W> solve_axis(int j, SixRow<W>& c, const SixGe
                                                 bool split) {
     using F = Wide<float, W>;
     auto& row = c.row[j];
-    auto before = row;
     const F zero = splat<F>(0.0f);
     Vec3T<F> sliding = p.sliding(o.ra, o.rb);
     F v = dot(o.direction[j], is_linear_row(j) ? sliding : p.turning());
     F change = solve_springs<W, biased>(row, k, split, c.relaxation, rate, o.coordinate[j], v);
     change = change + solve_motor<W>(row, k, split, c.relaxation, rate, v + rate * change);
-    SpeedRange<F> range = speed_range<biased>(row, o.coordinate[j], bias_of(c, k, split), k);
+    const F coordinate = j < 3 || j >= distance_row ? o.coordinate[j] : near_bounds(row, o.coordinate[j]);
+    SpeedRange<F> range = speed_range<biased>(row, coordinate, bias_of(c, k, split), k);
     F speed = v + rate * change;
     if constexpr (biased) speed = speed + axis_curvature<W>(j, c, o, p, k, sliding);
     F held = row.limit, pushed = solve_limit<biased>(row, range, rate, c.leak, c.relaxation, speed);
@@ -134,10 +134,11 @@ LENDULET_FORCE_INLINE Wide<float, W> solve_axis(int j, SixRow<W>& c, const SixGe
     row.limit = select(hard, row.limit, held);
     change = change + select(hard, pushed, zero);
     auto used = (row.used > zero) & (rate > zero);
-    row.limit = select(used, row.limit, before.limit);
-    row.motor = select(used, row.motor, before.motor);
-    row.spring = select(used, row.spring, before.spring);
-    row.spring_sum = select(used, row.spring_sum, before.spring_sum);
+    // A row without a direction holds nothing.
+    row.limit = select(used, row.limit, zero);
+    row.motor = select(used, row.motor, zero);
+    row.spring = select(used, row.spring, zero);
+    row.spring_sum = select(used, row.spring_sum, zero);
     return select(used, change, zero);
 }
 

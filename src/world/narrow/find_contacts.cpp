@@ -311,9 +311,8 @@ private:
     void finish(ColliderPair& p, uint32_t index, int count, float margin, float clearance) {
         p.count = static_cast<uint8_t>(count);
         for (int i = 0; i < count; ++i) tally(p.first_record + static_cast<uint32_t>(i));
-        const bool may_be_kept = p.kind == PairKind::general || p.kind == PairKind::boxes;
-        if (may_be_kept || p.fixed_a) remember_separations(p, count);  // floors have seams, see seams.cpp
-        if (!may_be_kept) return;
+        if (has_found_separations(p)) remember_separations(p, count);
+        if (!may_be_kept(p)) return;
         KeptPose& pose = world_.pairs.poses[index];
         uint32_t a = collider_a(p), b = collider_b(p);
         const ShapeFrame &fa = world_.frames[a], &fb = world_.frames[b];

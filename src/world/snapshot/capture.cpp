@@ -132,8 +132,9 @@ void capture_pair(const WorldData& world, uint32_t number, SavedState& state) {
     s.pose = world.pairs.poses[number];
     s.kept = s.pose.clearance != unkept;
     state.pairs.push_back(s);
+    const bool found = has_found_separations(p);  // those of others were never written
     for (uint32_t i = p.first_record; i < p.first_record + p.count; ++i) {
-        SavedContact c{world.records[i], world.found_separations[i]};
+        SavedContact c{world.records[i], found ? world.found_separations[i] : FoundSeparations{}};
         c.rolls = (c.record.flags & contact_rolls) != 0;
         c.covered = (c.record.flags & contact_covered) != 0;
         if (c.rolls) c.extra = world.extras[i], c.fresh = c.extra.step == static_cast<uint32_t>(world.steps);
