@@ -67,6 +67,16 @@ struct SolverKernels {
     // Fills in a block, and tells which contacts of it may meet.
     void (*prepare_meetings)(MeetingBlock&, const SolverBodies&, const ContactRecord*, const MeetingContacts&);
     void (*find_meetings)(MeetingBlock&, const SolverBodies&, const SubstepConstants&);
+
+    // Takes from another table what no row is packed for: any number of lanes will do.
+    constexpr void take_common(const SolverKernels& other) {
+        begin_step = other.begin_step;
+        kick = other.kick;
+        drift = other.drift;
+        settle = other.settle;
+        prepare_meetings = other.prepare_meetings;
+        find_meetings = other.find_meetings;
+    }
 };
 
 inline int row_class(int points) { return points > 2 ? 2 : points - 1; }

@@ -77,23 +77,30 @@ void read_group(const ContactGroup& g, int place, float impulses[4]) {
     else read_row<W, 4>(g, place, impulses);
 }
 
-template <int W>
+// `whole`: also those that no row is packed for, see SolverKernels::take_common().
+template <int W, bool whole = true>
 constexpr SolverKernels make_kernels() {
-    return {W,
-            {sizeof(ContactRow<W, 1>), sizeof(ContactRow<W, 2>), sizeof(ContactRow<W, 4>)},
-            sizeof(RollingRow<W>),
-            prepare_group<W>,
-            pass_group<W, Pass::warm_start>,
-            pass_group<W, Pass::solve>,
-            pass_group<W, Pass::relax>,
-            store_group<W>,
-            read_group<W>,
-            begin_bodies<W>,
-            kick_bodies<W>,
-            drift_bodies<W>,
-            settle_bodies<W>,
-            prepare_meetings<W>,
-            find_meetings<W>};
+    SolverKernels k{};
+    k.width = W;
+    k.row_bytes[0] = sizeof(ContactRow<W, 1>);
+    k.row_bytes[1] = sizeof(ContactRow<W, 2>);
+    k.row_bytes[2] = sizeof(ContactRow<W, 4>);
+    k.rolling_bytes = sizeof(RollingRow<W>);
+    k.prepare = prepare_group<W>;
+    k.warm_start = pass_group<W, Pass::warm_start>;
+    k.solve = pass_group<W, Pass::solve>;
+    k.relax = pass_group<W, Pass::relax>;
+    k.store = store_group<W>;
+    k.read_impulses = read_group<W>;
+    if constexpr (whole) {
+        k.begin_step = begin_bodies<W>;
+        k.kick = kick_bodies<W>;
+        k.drift = drift_bodies<W>;
+        k.settle = settle_bodies<W>;
+        k.prepare_meetings = prepare_meetings<W>;
+        k.find_meetings = find_meetings<W>;
+    }
+    return k;
 }
 
 }  // namespace

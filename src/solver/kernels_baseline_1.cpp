@@ -5,6 +5,10 @@
 namespace lendulet {
 
 extern const SolverKernels baseline_kernels_1;
+#if defined(__wasm__)
+constexpr SolverKernels baseline_kernels_1 = baseline_one::make_kernels<1, false>();  // see kernels.cpp
+#else
 constexpr SolverKernels baseline_kernels_1 = baseline_one::make_kernels<1>();
+#endif
 
 }  // namespace lendulet

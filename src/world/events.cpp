@@ -180,6 +180,13 @@ void report_contact(WorldData& world, ColliderPair& p, uint8_t asks, PendingHits
     if (asks_for(asks, Events::hits)) report_hit(world, p, s, pending);
 }
 
+// Few events come out of order. By a heap, which takes a third of the code that std::sort does.
+template <class T, class Precedes>
+void sort_from(Array<T>& list, size_t first, Precedes precedes) {
+    std::make_heap(list.begin() + first, list.end(), precedes);  // order: total
+    std::sort_heap(list.begin() + first, list.end(), precedes);  // order: total
+}
+
 void report_sleep(WorldData& world) {
     EventData& e = world.events;
     if (e.woken.empty() && e.fallen.empty()) return;
@@ -274,14 +281,14 @@ void report_events(WorldData& world) {
             if (p.kind == PairKind::trigger) report_trigger(world, p, asks);
             else report_contact(world, p, asks, pending);
         });
-    if (pending.release(e.hits)) std::sort(e.hits.begin() + hits, e.hits.end(), precedes<ContactHit>);  // order: total
+    if (pending.release(e.hits)) sort_from(e.hits, hits, precedes<ContactHit>);
     for (const EndedTouch& x : e.ended) {
         if (x.trigger) e.trigger_ends.push_back(overlap_of(x.pair, true));
         else e.ends.push_back(x.pair);
     }
     if (!e.ended.empty()) {
-        std::sort(e.ends.begin() + ends, e.ends.end(), precedes<ContactEvent>);                    // order: total
-        std::sort(e.trigger_ends.begin() + trigger_ends, e.trigger_ends.end(), precedes_overlap);  // order: total
+        sort_from(e.ends, ends, precedes<ContactEvent>);
+        sort_from(e.trigger_ends, trigger_ends, precedes_overlap);
     }
     e.ended.clear();
 }

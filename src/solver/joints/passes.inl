@@ -306,32 +306,47 @@ LENDULET_FORCE_INLINE void rebase(JointRow<W, C>& c, const JointGeometry<W, C>& 
     c.turn_b = turn_b;
 }
 
-// Lets go of what soft rows hold beyond most_held_speed and most_held_spin, all rows of a joint by the same share. Few
-// ever come so far: a bound of the spins, by the traces of the inverse inertias, tells.
+// What a joint holds: along the line or at the point, and about each body's centre of mass.
+template <class F>
+struct HeldByJoint {
+    Vec3T<F> linear, turn_a, turn_b;
+};
+
+// Takes from the bodies what soft rows hold beyond most_held_speed and most_held_spin; returns what share stays.
+template <int W>
+[[gnu::noinline]] Wide<float, W> let_go_of_excess(JointPair<Wide<float, W>>& p, const HeldByJoint<Wide<float, W>>& held,
+                                                  Wide<float, W> speed2, Wide<float, W> leak) {
+    using F = Wide<float, W>;
+    const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
+    constexpr float per_spin = 1.0f / most_held_spin;
+    const Vec3T<F> spin_a = p.IA * held.turn_a, spin_b = p.IB * held.turn_b;
+    const F spin2 = splat<F>(per_spin * per_spin) * maximum(dot(spin_a, spin_a), dot(spin_b, spin_b));
+    const F over2 = select(leak > zero, maximum(speed2, spin2), zero);
+    auto are_over = over2 > one;
+    const F share = select(are_over, one / square_root(over2), one), less = one - share;
+    p.A.v = select(are_over, p.A.v + (less * p.A.inverse_mass) * held.linear, p.A.v);
+    p.B.v = select(are_over, p.B.v - (less * p.B.inverse_mass) * held.linear, p.B.v);
+    p.A.w = select(are_over, p.A.w + less * spin_a, p.A.w);
+    p.B.w = select(are_over, p.B.w - less * spin_b, p.B.w);
+    return share;
+}
+
+// All rows of a joint let go of the same share. Few ever come so far: a bound of the spins, by the traces of the
+// inverse inertias, tells.
 template <int W, JointClass C>
 LENDULET_FORCE_INLINE void limit_held(JointRow<W, C>& c, JointPair<Wide<float, W>>& p) {
     using F = Wide<float, W>;
-    const F zero = splat<F>(0.0f), one = splat<F>(1.0f);
     constexpr float per_speed = 1.0f / most_held_speed, per_spin = 1.0f / most_held_spin;
-    Vec3T<F> linear;
-    if constexpr (JointShape<C>::along) linear = c.linear;
-    else linear = {c.impulse[0], c.impulse[1], c.impulse[2]};
+    HeldByJoint<F> held{{}, c.turn_a, c.turn_b};
+    if constexpr (JointShape<C>::along) held.linear = c.linear;
+    else held.linear = {c.impulse[0], c.impulse[1], c.impulse[2]};
     const F speed = splat<F>(per_speed) * (p.A.inverse_mass + p.B.inverse_mass);
-    const F speed2 = (speed * speed) * dot(linear, linear);
+    const F speed2 = (speed * speed) * dot(held.linear, held.linear);
     const F most_a = splat<F>(per_spin) * (p.IA.xx + p.IA.yy + p.IA.zz),
             most_b = splat<F>(per_spin) * (p.IB.xx + p.IB.yy + p.IB.zz);
     const F most2 = maximum((most_a * most_a) * dot(c.turn_a, c.turn_a), (most_b * most_b) * dot(c.turn_b, c.turn_b));
-    if (mask_bits(maximum(speed2, most2) > one) == 0) return;
-    const Vec3T<F> spin_a = p.IA * c.turn_a, spin_b = p.IB * c.turn_b;
-    const F spin2 = splat<F>(per_spin * per_spin) * maximum(dot(spin_a, spin_a), dot(spin_b, spin_b));
-    const F over2 = select(c.leak > zero, maximum(speed2, spin2), zero);
-    auto are_over = over2 > one;
-    const F share = select(are_over, one / square_root(over2), one), less = one - share;
-    p.A.v = select(are_over, p.A.v + (less * p.A.inverse_mass) * linear, p.A.v);
-    p.B.v = select(are_over, p.B.v - (less * p.B.inverse_mass) * linear, p.B.v);
-    p.A.w = select(are_over, p.A.w + less * spin_a, p.A.w);
-    p.B.w = select(are_over, p.B.w - less * spin_b, p.B.w);
-    scale_impulses<W, C>(c, share);
+    if (mask_bits(maximum(speed2, most2) > splat<F>(1.0f)) == 0) return;
+    scale_impulses<W, C>(c, let_go_of_excess<W>(p, held, speed2, c.leak));
 }
 
 template <int W, JointClass C>

@@ -70,7 +70,12 @@ public:
     bool at_end() const { return left_.empty(); }
 
 private:
-    void take(void* value, size_t size) {
+    // A page loads the module: there a call takes less room than a hundred copies.
+#if defined(__wasm__)
+    [[gnu::noinline]]
+#endif
+    void
+    take(void* value, size_t size) {
         if (size > left_.size()) good_ = false;
         if (!good_) {
             std::memset(value, 0, size);
