@@ -23,8 +23,12 @@ struct FlyingPairs {
     std::array<ImpactContact, contacts_of_case> contacts{};
     std::array<MeetingBlock, 3> blocks{};
     RandomNumbers random;
+    float speed = 3.0f, spin = 8.0f, push = 10.0f;  // m/s, rad/s, m/s^2
 
     explicit FlyingPairs(uint32_t seed) : random{seed} {
+        // In some the bodies hardly meet but by how they turn or are pushed within the substep.
+        if (seed % 3 == 1) speed = 0.3f, spin = 60.0f;
+        if (seed % 3 == 2) speed = 0.3f, push = 1000.0f;
         bodies.reset(2 * contacts_of_case);
         for (int i = reserved_bodies; i < bodies.count; ++i) add_body(static_cast<size_t>(i));
         solver_kernels(1).begin_step(bodies, 0, (bodies.count + block_bodies - 1) / block_bodies * block_bodies);
@@ -46,8 +50,8 @@ struct FlyingPairs {
             m.inverse_inertia[k] = 1.0f / m.inertia[k];
         }
         m.anisotropy = round ? 1.0f : 1.9f;
-        m.acceleration[1] = -10.0f;
-        fill(bodies.start[i].v, 3, 3.0f), fill(bodies.start[i].w, 3, 8.0f);
+        fill(m.acceleration, 3, push);
+        fill(bodies.start[i].v, 3, speed), fill(bodies.start[i].w, 3, spin);
         const Quat q{s.dq[0], s.dq[1], s.dq[2], s.dq[3]};
         const SymMat3 inverse = rotate_diagonal(rotation_matrix<float>(QuatT<float>(q), 1.0f),
                                                 {m.inverse_inertia[0], m.inverse_inertia[1], m.inverse_inertia[2]});
@@ -134,7 +138,7 @@ TEST(Meetings, NoImpactIsMissedAndMostContactsArePassedOver) {
         found += __builtin_popcountll(may), met += __builtin_popcountll(does);
     }
     EXPECT_GT(met, 1000);
-    EXPECT_LT(found, met + met / 2);
+    EXPECT_LT(found, 2 * met);
     EXPECT_LT(met, 300 * contacts_of_case / 2);
 }
 
