@@ -94,7 +94,8 @@ lendulet_result lendulet_set_filter(lendulet_world* world, lendulet_shape shape,
 
 lendulet_result lendulet_set_events(lendulet_world* world, lendulet_shape shape, int32_t events) {
     if (!world) return refuse_null("set_events");
-    const auto asked = static_cast<Events>(events & static_cast<int32_t>(Events::all));
+    const bool known = events >= 0 && events <= static_cast<int32_t>(Events::all);
+    const auto asked = static_cast<Events>(known ? events : 0xff);  // which is refused
     return result_of(world->scene.world.set_events(id_of<ColliderId>(shape), asked));
 }
 

@@ -166,7 +166,7 @@ public:
     // Whom a collider meets, what it is made of, and what it reports from the next step on. Wakes its body and those
     // that touch it or may do so now. A pair that is filtered out ends; where one begins that overlaps, overlap is
     // undone as any other. Errors: stale_id, wrong_world; of materials bad_material, and bad_collider where triangles
-    // have materials of their own. On an error nothing has changed.
+    // have materials of their own; of events bad_collider (bits that are none). On an error nothing has changed.
     Status set_filter(ColliderId id, const CollisionFilter& filter);
     Status set_material(ColliderId id, const Material& material);
     Status set_events(ColliderId id, Events events);

@@ -147,6 +147,7 @@ Status World::set_material(ColliderId id, const Material& material) {
 Status World::set_events(ColliderId id, Events events) {
     WorldData& world = *data_;
     if (!world.colliders.alive(id)) return no_such(world.colliders.slots, id.generation, "set_events", "collider");
+    if (Status s = check_events(events, "set_events"); !s) return s;
     set_asks(world, id.index, events);
     wake_pairs_of(world, id.index, [&](uint32_t number) {
         ColliderPair& p = world.pairs.pairs[number];

@@ -56,6 +56,7 @@ Result<CheckedCollider> check_collider(WorldData& world, const ColliderDef& def,
     c.def.local.rotation = q.value();
     if (!is_finite(def.density) || !(def.density > 0.0f))
         return refused(ErrorCode::bad_mass, call, "density is " + text(def.density) + ", must be positive");
+    if (Status s = check_events(def.events, call); !s) return s.error();
     Result<Surface> surface = make_surface(world.config, def.material, call);
     if (!surface) return surface.error();
     c.surface = surface.value();

@@ -65,7 +65,14 @@ Result<Surface> make_surface(const WorldConfig& config, const Material& m, const
     if (!spinning) return spinning.error();
     Result<float> turned = coefficient(m.tangential_restitution, 0.0f, 1.0f, "tangential restitution", call);
     if (!turned) return turned.error();
+    if (m.friction_combine > CombineRule::multiply || m.restitution_combine > CombineRule::multiply)
+        return Error{ErrorCode::bad_material, std::string(call) + ": that combine rule is none"};
     return with_defaults(m, config.friction, config.restitution);
+}
+
+Status check_events(Events events, const char* call) {
+    if (events <= Events::all) return {};
+    return Error{ErrorCode::bad_collider, std::string(call) + ": such events are none"};
 }
 
 Status check_drag(float linear_damping, float angular_damping, float gravity_factor, const char* call) {

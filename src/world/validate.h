@@ -22,6 +22,8 @@ Status valid_position(Position p, const char* call);
 Error no_such(const Slots& slots, uint32_t generation, const char* call, const char* what);
 // A material with the world's defaults, where its coefficients are in range: bad_material.
 Result<Surface> make_surface(const WorldConfig& config, const Material& material, const char* call);
+// Error: bad_collider (bits that are none).
+Status check_events(Events events, const char* call);
 // Of a body: finite, damping not negative.
 Status check_drag(float linear_damping, float angular_damping, float gravity_factor, const char* call);
 // Number as text for messages.

@@ -195,6 +195,23 @@ TEST(Alter, RefusesWhatIsGoneOrElsewhere) {
     EXPECT_EQ(code_of(y.world.set_events(y.box_collider, Events::all)), ErrorCode::stale_id);
 }
 
+// What is no value of an enumeration would be refused by restore() in a snapshot of the very world.
+TEST(Alter, WhatIsNoneIsRefused) {
+    World world = WorldBuilder().build().value();
+    const auto events = static_cast<Events>(4);
+    Material material;
+    material.friction_combine = static_cast<CombineRule>(4);
+    EXPECT_EQ(world.add_rigid_body({.events = events}).error().code, ErrorCode::bad_collider);
+    const ColliderDef collider{.material = material};
+    EXPECT_EQ(world.add_static_body({.colliders = {&collider, 1}}).error().code, ErrorCode::bad_material);
+    EXPECT_EQ(world.body_count(), 0);
+    const BodyId body = world.add_rigid_body({}).value();
+    const ColliderId id = world.get(body).collider();
+    EXPECT_EQ(world.set_events(id, events).error().code, ErrorCode::bad_collider);
+    EXPECT_EQ(world.set_material(id, material).error().code, ErrorCode::bad_material);
+    EXPECT_TRUE(world.restore(world.snapshot()));
+}
+
 TEST(Alter, EventsFromNowOn) {
     Yard y;
     run(y.world, 60);
