@@ -42,8 +42,6 @@ void Solver::find_meetings(TaskPool& tasks, const SolverBodies& bodies, const Co
 
 void Solver::watch(const WatchList& list) {
     watched_ = list;
-    foreseen_.clear();
-    watched_meetings_.clear();
     if (list.count == 0) return;
     for (int g = 0; g < schedule_.groups.count(); ++g) {
         const ContactGroup& group = schedule_.groups[static_cast<size_t>(g)];
@@ -57,7 +55,8 @@ void Solver::read_watched(const WatchedContact& w, float impulses[4]) const {
     (group.alone ? scalar_ : kernels_).read_impulses(group, w.place, impulses);
 }
 
-void Solver::bound_watched(const ContactRecord* records) {
+void Solver::list_foreseen(const ContactRecord* records) {
+    foreseen_.clear();
     for (int i = 0; i < watched_.count; ++i) {
         const WatchedContact& w = watched_.list[watched_.first + i];
         const ContactRecord& r = records[w.record];

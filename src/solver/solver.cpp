@@ -148,7 +148,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
     k.joints = !joints_.empty();
     for_each_tile(tasks, range, [&](int, BodyRange r) { kernels_.begin_step(bodies, r.begin, r.end); });
     for (MeetingBlock& block : meetings_) block.ready = false;
-    if (watched_.count > 0) bound_watched(records);
+    if (watched_.count > 0) list_foreseen(records);
     if (passing_ > 0) disturbed_.assign(static_cast<size_t>(bodies.count), 0);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const SubstepConstants before = k;

@@ -129,12 +129,14 @@ private:
     // Which of `impacts_` may meet in this substep; prepares what of it is to be asked.
     void find_meetings(TaskPool& tasks, const SolverBodies& bodies, const ContactRecord* records,
                        const SubstepConstants& k);
-    void bound_watched(const ContactRecord* records);
+    // Watched contacts: when the step begins; before the rows of a substep, who of them may meet in it; and after
+    // these what they carry.
+    void list_foreseen(const ContactRecord* records);
     void foresee_watched(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records,
                          const SubstepConstants& k);
+    void note_watched(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, float h, bool last) const;
     // Of the row of a watched contact: what its points carry, N s.
     void read_watched(const WatchedContact& contact, float impulses[4]) const;
-    void note_watched(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, float h, bool last) const;
     void pass_tile(int tile, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
     void pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
 
