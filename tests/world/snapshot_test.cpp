@@ -138,6 +138,62 @@ TEST(Snapshot, HoldsWhatBodiesRememberThatWokeInTheAir) {
 }
 
 // Bytes tell of room that nobody has written to, which hashes do not.
+// What is done to a world between two steps wakes bodies whose contacts then rest until the next step begins.
+TEST(Snapshot, MayBeTakenRightAfterSomethingWoke) {
+    using Change = void (*)(World&, RigidBodyRef);
+    const Change changes[] = {
+        [](World&, RigidBodyRef box) { box.wake(); },
+        [](World&, RigidBodyRef box) {
+            box.apply_impulse({900.0f, 0.0f, 300.0f}).value();
+        },
+        [](World&, RigidBodyRef box) {
+            box.set_pose({0.2f, 0.5f, 0.0f}, {}).value();
+        },
+        [](World&, RigidBodyRef box) { box.set_type(BodyType::kinematic).value(); },
+        [](World& world, RigidBodyRef box) { world.set_events(box.collider(), Events::all).value(); },
+        [](World& world, RigidBodyRef box) { world.set_filter(box.collider(), {2}).value(); },
+        [](World& world, RigidBodyRef box) { world.set_material(box.collider(), {.static_friction = 0.1f}).value(); },
+        [](World& world, RigidBodyRef) {
+            world.set_gravity({1.0f, -5.0f, 0.0f}).value();
+        },
+        [](World& world, RigidBodyRef box) { world.remove_body(box.id()).value(); },
+    };
+    for (size_t i = 0; i < std::size(changes); ++i)
+        for (const float then : {dt, 0.5f * dt}) {  // shorter steps than those in which it fell asleep
+            auto build = [] {
+                World world = WorldBuilder{}.build().value();
+                add_floor(world);
+                add_stack(world, 0.0f, 3);
+                add_cube(world, 2.0f, 0);
+                return world;
+            };
+            auto [world, other] = std::pair{build(), build()};
+            for (World* w : {&world, &other}) {
+                run(*w, 120);
+                ASSERT_TRUE(w->get(w->body(1)).asleep());
+                run(*w, 5, then);
+                changes[i](*w, w->get(w->body(1)));
+            }
+            const std::vector<uint8_t> saved = world.snapshot();
+            const uint64_t hash = world.hash();
+            World fork = world.fork().value();
+            run(world, 60, then);
+            run(fork, 60, then);
+            EXPECT_EQ(fork.hash(), world.hash()) << i;
+            run(other, 60, then);
+            EXPECT_EQ(other.hash(), world.hash()) << i;
+            for (World* w : {&world, &other}) {
+                Status restored = w->restore(saved);
+                ASSERT_TRUE(restored.ok()) << i << restored.error().message;
+                EXPECT_EQ(w->hash(), hash) << i;
+                EXPECT_EQ(w->snapshot(), saved) << i;
+                EXPECT_EQ(w->check(), "") << i;
+                run(*w, 60, then);
+                EXPECT_EQ(w->hash(), fork.hash()) << i;
+            }
+        }
+}
+
 TEST(Snapshot, OfCapsulesThatTouchIsTheSameForAllWidths) {
     auto make = [](int width, int workers) {
         World world = WorldBuilder{}.width(width).workers(workers).build().value();

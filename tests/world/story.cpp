@@ -191,12 +191,16 @@ void Story::disturb(World& world) {
     }
 }
 
-void Story::go_on(World& world, float dt) {
+void Story::go_on(World& world) {
     const int what = one_of(6);
     if (what < 3 || bodies_.size() < 10) add_body(world);
     else if (what == 3) add_joint(world);
     else if (what == 4 && cast_.driven && !joints_.empty()) drive(world);
     else if (what == 5 && cast_.driven) disturb(world);
+}
+
+void Story::go_on(World& world, float dt) {
+    go_on(world);
     world.update(dt).value();
 }
 

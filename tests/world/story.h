@@ -23,7 +23,9 @@ public:
     Story(uint32_t seed, StoryCast cast);
     // The ground: a plane, a mesh with thin and empty triangles, a height field.
     void begin(World& world);
-    // Something happens, and the world makes a step.
+    // Something happens to the world.
+    void go_on(World& world);
+    // ... and it makes a step.
     void go_on(World& world, float dt);
 
 private:

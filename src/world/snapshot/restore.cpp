@@ -123,8 +123,7 @@ Status check_pairs(const WorldData& world, const SavedState& state) {
     const SavedPair* before = nullptr;
     for (const SavedPair& p : state.pairs) {
         bool sorted = p.a < p.b && (!before || before->a < p.a || (before->a == p.a && before->b < p.b));
-        if (!sorted || p.b >= owner.size() || !owner[p.a] || !owner[p.b] ||
-            (!p.listed && (owner[p.a]->mover || owner[p.b]->mover || !is_finite(p.rest_h))))
+        if (!sorted || p.b >= owner.size() || !owner[p.a] || !owner[p.b] || (!p.listed && !is_finite(p.rest_h)))
             return bad("holds a pair that cannot be");
         if (p.cache.gjk.face > GjkCache::unknown_face) return bad("holds a face that boxes do not have");
         if (p.cache.gjk.count > 4 || p.contacts > room_for_contacts(world, p)) return bad("holds too many contacts");
@@ -191,7 +190,6 @@ void apply_bodies(WorldData& world, const SavedState& state) {
         }
     }
     set_frames(world, colliders);  // what sleeps has not moved since the step before: its frames are where it is
-    movers.sorted = movers.bodies.size();
     movers.leaving = movers.joints_changed = true;  // to be listed anew
 }
 
@@ -305,6 +303,25 @@ void apply_pairs(WorldData& world, const SavedState& state) {
     list_contacts(world);
 }
 
+// Bodies that woke since the last step: they stand behind the others, and their pairs rest until the next one begins.
+void set_apart_woken(WorldData& world) {
+    Movers& m = world.movers;
+    auto has_just_woken = [&](uint32_t slot) {
+        bool has = false;
+        for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next)
+            world.pairs.for_each_of(c, [&](uint32_t number) { has |= !world.pairs.pairs[number].listed; });
+        return has;
+    };
+    m.merged.clear();
+    m.sorted = 0;
+    for (uint32_t slot : m.bodies) {
+        if (has_just_woken(slot)) m.merged.push_back(slot);
+        else m.bodies[m.sorted++] = slot;
+    }
+    for (size_t i = 0; i < m.merged.size(); ++i) m.bodies[m.sorted + i] = m.merged[i];
+    for (size_t i = 0; i < m.bodies.size(); ++i) world.bodies.info[m.bodies[i]].mover_place = static_cast<uint32_t>(i);
+}
+
 void apply_events(WorldData& world, const SavedState& state) {
     EventData& e = world.events;
     clear_events(e);
@@ -358,6 +375,7 @@ void apply(WorldData& world, const SavedState& state) {
     apply_boxes(world, state);
     apply_joints(world, state);
     apply_pairs(world, state);
+    set_apart_woken(world);
     apply_events(world, state);
     world.query_scene.all_moved();
 }
