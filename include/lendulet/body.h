@@ -50,6 +50,10 @@ struct Material {
     // Share of the slip at an impact that turns round, 0 (it stops at most) .. 1 (a superball), as far as friction
     // allows. In impacts that bounce only. Combined by restitution_combine.
     float tangential_restitution = 0.0f;
+    // How fast the surface itself runs over its body, in the collider's frame, m/s: a conveyor belt's, a treadmill's.
+    // Friction carries along what touches it, as fast as the part of this vector that lies in the contact's plane; the
+    // belt's body feels the reaction. Of two such surfaces the difference counts.
+    Vec3 surface_velocity{};
     CombineRule friction_combine = CombineRule::average;
     CombineRule restitution_combine = CombineRule::maximum;
 };
@@ -95,6 +99,7 @@ struct RigidBodyDef {
     std::optional<float> dynamic_friction{};  // unset: `friction`
     std::optional<float> restitution{};
     float rolling_friction = 0.0f, spinning_friction = 0.0f, tangential_restitution = 0.0f;  // see Material
+    Vec3 surface_velocity{};                                                                 // see Material
     CollisionFilter filter{};
     Events events = Events::none;  // of `shape`
     std::span<const ColliderDef> colliders{};
@@ -124,6 +129,7 @@ struct StaticBodyDef {
     std::optional<float> dynamic_friction{};
     std::optional<float> restitution{};
     float rolling_friction = 0.0f, spinning_friction = 0.0f, tangential_restitution = 0.0f;  // see Material
+    Vec3 surface_velocity{};                                                                 // see Material
     CollisionFilter filter{};
     Events events = Events::none;  // of `shape`
     std::span<const ColliderDef> colliders{};

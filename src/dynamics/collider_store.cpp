@@ -57,7 +57,8 @@ Surface with_defaults(const Material& given, float friction, float restitution) 
             given.restitution_combine,
             given.rolling_friction,
             given.spinning_friction,
-            given.tangential_restitution};
+            given.tangential_restitution,
+            given.surface_velocity};
 }
 
 void ColliderStore::copy(const ColliderStore& o) {

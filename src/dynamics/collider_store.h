@@ -17,8 +17,10 @@ struct Surface {
     float static_friction, dynamic_friction, restitution;
     CombineRule friction_combine, restitution_combine;
     float rolling_friction = 0.0f, spinning_friction = 0.0f, tangential_restitution = 0.0f;
+    Vec3 velocity{};  // over its body, in the collider's frame, m/s
+    bool runs() const { return velocity.x != 0.0f || velocity.y != 0.0f || velocity.z != 0.0f; }
     bool has_extra() const {
-        return rolling_friction > 0.0f || spinning_friction > 0.0f || tangential_restitution > 0.0f;
+        return rolling_friction > 0.0f || spinning_friction > 0.0f || tangential_restitution > 0.0f || runs();
     }
 };
 

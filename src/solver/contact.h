@@ -42,12 +42,12 @@ struct alignas(64) ContactRecord {
 };
 static_assert(sizeof(ContactRecord) == 192);
 
-inline constexpr uint32_t contact_flipped = 1;    // A and B are exchanged against the order of the two colliders
-inline constexpr uint32_t contact_rolls = 2;      // it resists rolling or spinning: see ContactExtra
-inline constexpr uint32_t contact_sharp = 8;      // neither shape is round anywhere: corners meet faces
-inline constexpr uint32_t contact_balls = 16;     // of two balls: its normal is the line between their centres
-inline constexpr uint32_t contact_swift = 32;     // in a substep an arm grows by much of a body's size, see impacts.h
-inline constexpr uint32_t contact_passes = 64;    // met only if something else changes how the bodies move in this step
+inline constexpr uint32_t contact_flipped = 1;  // A and B are exchanged against the order of the two colliders
+inline constexpr uint32_t contact_rolls = 2;    // it resists rolling or spinning, or its surfaces run: see ContactExtra
+inline constexpr uint32_t contact_sharp = 8;    // neither shape is round anywhere: corners meet faces
+inline constexpr uint32_t contact_balls = 16;   // of two balls: its normal is the line between their centres
+inline constexpr uint32_t contact_swift = 32;   // in a substep an arm grows by much of a body's size, see impacts.h
+inline constexpr uint32_t contact_passes = 64;  // met only if something else changes how the bodies move in this step
 inline constexpr uint32_t contact_crowded = 128;  // see ContactEnds; of those that bounce
 
 // What it takes to schedule a contact, so that those who go through all of them, one by one, need not read the records.
@@ -66,6 +66,7 @@ struct ContactEnds {
 struct ContactExtra {
     float rolling, spinning;       // greatest torque per normal force against rolling and about the normal, m
     float tangential_restitution;  // share of the slip at an impact that turns round, 0 .. 1
+    float running[3];              // of the surfaces over their bodies, B's less A's, in the contact's plane, m/s
     float impulse[3];              // the result: against turning, on B in the last substep, world axes, N m s
     float h;                       // that substep, s
     uint32_t pair, key;            // the manifold that the impulse is of, ...

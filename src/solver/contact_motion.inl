@@ -302,7 +302,11 @@ template <int W, int P>
             store_velocity_at<W>(bodies.state, c.a, A);
         }
         const WideVelocity<F> A0 = load_start_at<W>(bodies.start, c.a), B0 = load_start_at<W>(bodies.start, c.b);
-        const Vec3T<F> slip = (B0.v - A0.v) + (cross(B0.w, now.rb) - cross(A0.w, now.ra));
+        Vec3T<F> slip = (B0.v - A0.v) + (cross(B0.w, now.rb) - cross(A0.w, now.ra));
+        if (g.rolling) {
+            const Vec3T<F> running = reinterpret_cast<const RollingRow<W>*>(g.rolling)[first / W].running;
+            slip = slip + (running - dot(running, renewed.n) * renewed.n);
+        }
         now.start_slip = select(turned, slip, now.start_slip);
         take_over<W, P>(c, renewed, turns, balls);
         c.ra = c.ra + gone;

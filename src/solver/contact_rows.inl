@@ -79,6 +79,18 @@ struct alignas(64) ContactRow {
     PatchFriction<F, P> friction;
 };
 
+// The second row of contacts that have a ContactExtra, see rolling.inl.
+template <int W>
+struct alignas(64) RollingRow {
+    using F = Wide<float, W>;
+    Vec3T<F> start_spin;  // relative angular velocity at the start of the step
+    F mass[3];            // inverse of the block of t1 and t2: 11 12 22
+    F mass_n;
+    F rolling, spinning;   // m
+    F tangent[2], normal;  // impulses on B, N m s
+    Vec3T<F> running;      // see ContactExtra, m/s
+};
+
 struct BodyArrays {
     BodyState* state;
     const BodyInertia* inertia;

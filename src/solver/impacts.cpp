@@ -63,9 +63,12 @@ Along sliding_direction(const float K[3], float fx, float fy, float most, float 
 // The impulse on B: Newton's restitution along n, and against the slip Coulomb's friction on the whole normal impulse
 // (thesis 3.3.4, magnitudes as in THESIS-NOTES). All three components at once, since bodies other than balls answer to
 // an impulse along n across it too. Newton's law alone would then let some impacts gain energy (Kane, Levinson,
-// "Dynamics", 1985, 5.8): such ones get as much of the impulse as leaves it unchanged.
-Vec3 impact_impulse(const Meeting& m, const ContactRecord& r, Vec3 n, float speed, float tangential_restitution) {
-    const Vec3 x = perpendicular(n), y = cross(n, x), slip = m.slip();
+// "Dynamics", 1985, 5.8): such ones get as much of the impulse as leaves it unchanged. Where a surface runs that is
+// energy as seen from it.
+Vec3 impact_impulse(const Meeting& m, const ContactRecord& r, Vec3 n, float speed, const ContactExtra* extra) {
+    const float tangential_restitution = extra ? extra->tangential_restitution : 0.0f;
+    const Vec3 running = extra ? load(extra->running) : Vec3{};
+    const Vec3 x = perpendicular(n), y = cross(n, x), slip = m.slip() + (running - dot(running, n) * n);
     const float nn = m.response(n, n), nx = m.response(n, x), ny = m.response(n, y);
     const float xx = m.response(x, x), xy = m.response(x, y), yy = m.response(y, y);
     const float rise = (1.0f + r.restitution) * speed;
@@ -99,7 +102,7 @@ Vec3 impact_impulse(const Meeting& m, const ContactRecord& r, Vec3 n, float spee
 // One point of a manifold, of which `a` and `b` are the bodies as they are; true where it bounced, and they are not any
 // more.
 bool bounce_point(SolverBodies& bodies, Side& a, Side& b, const ContactRecord& r, const ContactPointRecord& point,
-                  float tangential_restitution, const SubstepConstants& k, int sweep, WatchedContact* watched) {
+                  const ContactExtra* extra, const SubstepConstants& k, int sweep, WatchedContact* watched) {
     const float slowest = slowest_bounce(r) * k.bounce_speed;
     const Nearing near = nearing_of(a, b, r, point, k.h);
     const Impact first = near.first;
@@ -131,7 +134,7 @@ bool bounce_point(SolverBodies& bodies, Side& a, Side& b, const ContactRecord& r
     const float speed = -dot(m.slip(), n);
     if (!(speed >= slowest)) return false;
 
-    const Vec3 impulse = impact_impulse(m, r, n, speed, tangential_restitution);
+    const Vec3 impulse = impact_impulse(m, r, n, speed, extra);
     if (watched) {
         const Vec3 way = time * b.now.v + (0.5f * time * time) * b.acceleration;
         note_impact(*watched, speed, dot(impulse, n), n, load(b.state->dp) + way + m.b.arm);
@@ -144,13 +147,13 @@ bool bounce_point(SolverBodies& bodies, Side& a, Side& b, const ContactRecord& r
 }
 
 // All points of a manifold; of `fresh` ones those that have carried nothing.
-bool bounce_points(SolverBodies& bodies, const ContactRecord& r, bool fresh, float tangential_restitution,
+bool bounce_points(SolverBodies& bodies, const ContactRecord& r, bool fresh, const ContactExtra* extra,
                    const SubstepConstants& k, int sweep, WatchedContact* watched) {
     bool met = false;
     Side a(bodies, r.body_a), b(bodies, r.body_b);
     for (int j = 0; j < r.point_count; ++j) {
         if (fresh && r.normal_impulse[j] > 0.0f) continue;
-        if (!bounce_point(bodies, a, b, r, r.points[j], tangential_restitution, k, sweep, watched)) continue;
+        if (!bounce_point(bodies, a, b, r, r.points[j], extra, k, sweep, watched)) continue;
         met = true;
         a = Side(bodies, r.body_a), b = Side(bodies, r.body_b);
     }
@@ -223,8 +226,8 @@ bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, const I
             const bool still = struck < first_sweep;
             if (still && c.held) continue;
             const ContactRecord& r = records[c.record];
-            const float back = list.extras ? list.extras[c.record].tangential_restitution : 0.0f;
-            const bool met = bounce_points(bodies, r, still, back, k, number, list.watched.of(c.record));
+            const ContactExtra* extra = list.extras ? list.extras + c.record : nullptr;
+            const bool met = bounce_points(bodies, r, still, extra, k, number, list.watched.of(c.record));
             bounced |= met;
             if (met && list.disturbed) list.disturbed[a] = list.disturbed[b] = 1;
         }

@@ -1,4 +1,5 @@
-// Rows that resist rolling and spinning, for the contacts that have such friction. Part of kernels.inl.
+// Rows that resist rolling and spinning, for the contacts that have such friction or whose surfaces run over their
+// bodies. Part of kernels.inl.
 //
 // A contact presses over a patch that is ahead of its middle while a body rolls: its reaction N then has the moment b N
 // against the turning about the patch's tangents, with b the rolling coefficient, a length. About the normal, the
@@ -9,27 +10,21 @@
 // is solved before the contact's own in the biased pass, when the normal impulses are those of the last relax pass:
 // their mean is the load, which that of a biased pass is not quite. Friction comes after it, so that slip is zero at
 // the end.
-
-template <int W>
-struct alignas(64) RollingRow {
-    using F = Wide<float, W>;
-    Vec3T<F> start_spin;  // relative angular velocity at the start of the step
-    F mass[3];            // inverse of the block of t1 and t2: 11 12 22
-    F mass_n;
-    F rolling, spinning;   // m
-    F tangent[2], normal;  // impulses on B, N m s
-};
+//
+// A surface that runs, a conveyor belt's, is nothing but a slip that is there from the start: the contact's own row
+// begins with it and needs to know no more.
 
 template <int W, int P>
 void prepare_rolling(const ContactGroup& g, const SolverBodies& bodies, int begin, int end) {
     using F = Wide<float, W>;
-    auto* contacts = reinterpret_cast<const ContactRow<W, P>*>(g.rows);
+    auto* contacts = reinterpret_cast<ContactRow<W, P>*>(g.rows);
     auto* rows = reinterpret_cast<RollingRow<W>*>(g.rolling);
     for (int i = begin; i < end; ++i) {
-        const ContactRow<W, P>& c = contacts[i];
+        ContactRow<W, P>& c = contacts[i];
         RollingRow<W>& r = rows[i];
         int32_t a[W], b[W];
         Vec3T<F> held = zero_vector<F>();
+        r.running = zero_vector<F>();
         r.rolling = r.spinning = splat<F>(0.0f);
         for (int l = 0; l < W; ++l) {
             a[l] = c.a[l] / 8, b[l] = c.b[l] / 8;
@@ -40,7 +35,11 @@ void prepare_rolling(const ContactGroup& g, const SolverBodies& bodies, int begi
             set_lane(held.x, l, extra.impulse[0]);
             set_lane(held.y, l, extra.impulse[1]);
             set_lane(held.z, l, extra.impulse[2]);
+            set_lane(r.running.x, l, extra.running[0]);
+            set_lane(r.running.y, l, extra.running[1]);
+            set_lane(r.running.z, l, extra.running[2]);
         }
+        c.start_slip = c.start_slip + r.running;
         r.start_spin = load_start<W>(bodies.start.data(), b).w - load_start<W>(bodies.start.data(), a).w;
         SymMat3T<F> K = load_inverse_inertia_at<W>(bodies.inertia.data(), c.a) +
                         load_inverse_inertia_at<W>(bodies.inertia.data(), c.b);

@@ -90,6 +90,7 @@ std::vector<ColliderDef> colliders_of(const Def& def, float density) {
     one.material.rolling_friction = def.rolling_friction;
     one.material.spinning_friction = def.spinning_friction;
     one.material.tangential_restitution = def.tangential_restitution;
+    one.material.surface_velocity = def.surface_velocity;
     one.filter = def.filter;
     one.events = def.events;
     one.density = density;

@@ -65,6 +65,8 @@ Result<Surface> make_surface(const WorldConfig& config, const Material& m, const
     if (!spinning) return spinning.error();
     Result<float> turned = coefficient(m.tangential_restitution, 0.0f, 1.0f, "tangential restitution", call);
     if (!turned) return turned.error();
+    if (!is_finite(m.surface_velocity))
+        return Error{ErrorCode::bad_material, std::string(call) + ": surface velocity must be finite"};
     if (m.friction_combine > CombineRule::multiply || m.restitution_combine > CombineRule::multiply)
         return Error{ErrorCode::bad_material, std::string(call) + ": that combine rule is none"};
     return with_defaults(m, config.friction, config.restitution);

@@ -176,7 +176,7 @@ struct WorldData {
     Array<ContactRecord> records;
     Array<FoundSeparations> found_separations;  // by record
     Array<ContactExtra> extras;                 // by record, where `has_extras`
-    bool has_extras = false;        // some material resists rolling or spinning or has tangential restitution
+    bool has_extras = false;        // some material resists rolling or spinning, has tangential restitution or runs
     Array<uint16_t> deep_contacts;  // by solver body: room for limit_recovery()
     Array<uint32_t> eased;          // records whose overlap is so deep that it may be undone more slowly than is set
     Array<uint32_t> touching;       // records with points of listed pairs, in order

@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr char magic[8] = {'L', 'E', 'N', 'D', 'S', 'N', 'A', 'P'};
-constexpr uint32_t version = 7;
+constexpr uint32_t version = 8;
 constexpr size_t header_bytes = sizeof magic + 2 * sizeof(uint32_t), checksum_bytes = sizeof(uint64_t);
 
 uint64_t checksum(std::span<const uint8_t> bytes) {
@@ -139,7 +139,7 @@ void collider(Bytes& bytes, SavedCollider& c) {
     bytes(c.filter.category, c.filter.mask, c.filter.group, c.events);
     Material& m = c.material;
     maybe(bytes, m.static_friction), maybe(bytes, m.dynamic_friction), maybe(bytes, m.restitution);
-    bytes(m.rolling_friction, m.spinning_friction, m.tangential_restitution);
+    bytes(m.rolling_friction, m.spinning_friction, m.tangential_restitution, m.surface_velocity);
     bytes(m.friction_combine, m.restitution_combine);
 }
 

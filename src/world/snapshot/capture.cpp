@@ -25,9 +25,10 @@ uint64_t mix_settings(uint64_t h, const WorldConfig& c) {
 }
 
 uint64_t mix_surface(uint64_t h, const Surface& s) {
-    const float values[6] = {s.static_friction,  s.dynamic_friction,  s.restitution,
-                             s.rolling_friction, s.spinning_friction, s.tangential_restitution};
-    return hash_floats(h, values, 6);
+    const float values[9] = {s.static_friction,  s.dynamic_friction,  s.restitution,
+                             s.rolling_friction, s.spinning_friction, s.tangential_restitution,
+                             s.velocity.x,       s.velocity.y,        s.velocity.z};
+    return hash_floats(h, values, 9);
 }
 
 uint64_t mix_body(uint64_t h, const WorldData& world, uint32_t slot) {
@@ -104,7 +105,8 @@ bool alike(const Material& x, const Material& y) {
     return x.static_friction == y.static_friction && x.dynamic_friction == y.dynamic_friction &&
            x.restitution == y.restitution && x.rolling_friction == y.rolling_friction &&
            x.spinning_friction == y.spinning_friction && x.tangential_restitution == y.tangential_restitution &&
-           x.friction_combine == y.friction_combine && x.restitution_combine == y.restitution_combine;
+           x.surface_velocity == y.surface_velocity && x.friction_combine == y.friction_combine &&
+           x.restitution_combine == y.restitution_combine;
 }
 bool alike(const SavedCollider& x, const SavedCollider& y) {
     return alike(x.filter, y.filter) && x.events == y.events && alike(x.material, y.material);
