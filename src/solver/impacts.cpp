@@ -99,6 +99,8 @@ Vec3 impact_impulse(const Meeting& m, const ContactRecord& r, Vec3 n, float spee
     return minimum(1.0f, -2.0f * work / effort) * impulse;
 }
 
+#include "solver/face_impact.inl"
+
 // One point of a manifold, of which `a` and `b` are the bodies as they are; true where it bounced, and they are not any
 // more.
 bool bounce_point(SolverBodies& bodies, Side& a, Side& b, const ContactRecord& r, const ContactPointRecord& point,
@@ -151,9 +153,13 @@ bool bounce_points(SolverBodies& bodies, const ContactRecord& r, bool fresh, con
                    const SubstepConstants& k, int sweep, WatchedContact* watched) {
     bool met = false;
     Side a(bodies, r.body_a), b(bodies, r.body_b);
-    for (int j = 0; j < r.point_count; ++j) {
-        if (fresh && r.normal_impulse[j] > 0.0f) continue;
-        if (!bounce_point(bodies, a, b, r, r.points[j], extra, k, sweep, watched)) continue;
+    ContactPointRecord together;
+    const int all = -1;
+    const bool flat = r.point_count > 1 && meet_at_once(a, b, r, fresh, extra, k, together);
+    for (int j = flat ? all : 0; j < r.point_count; ++j) {
+        if (j != all && fresh && r.normal_impulse[j] > 0.0f) continue;
+        const ContactPointRecord& point = j == all ? together : r.points[j];
+        if (!bounce_point(bodies, a, b, r, point, extra, k, sweep, watched)) continue;
         met = true;
         a = Side(bodies, r.body_a), b = Side(bodies, r.body_b);
     }
