@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "solver/stand_ins.h"
+
 namespace lendulet {
 namespace {
 
@@ -13,6 +15,8 @@ int free_colour(uint32_t used, int colours) {
     int c = std::countr_one(used);
     return c < colours ? c : -1;
 }
+
+size_t rounded_up(size_t bytes) { return (bytes + Memory::alignment - 1) / Memory::alignment * Memory::alignment; }
 
 }  // namespace
 
@@ -104,7 +108,7 @@ void ColourSchedule::make_groups(const ColourSorter& sorter, ContactExtra* extra
         if (count == 0) return;
         ContactGroup g{};
         g.points = 4 >> (c % size_classes);
-        g.alone = ColourSorter::overflows(colour);
+        g.shares = ColourSorter::overflows(colour);
         g.fixed_a = ColourSorter::is_fixed(colour);
         g.filler = outside ? c : tiles.filler(tile);
         g.colour = number;
@@ -112,13 +116,13 @@ void ColourSchedule::make_groups(const ColourSorter& sorter, ContactExtra* extra
         g.order = order.data() + begin;
         g.extras = c >= size_classes ? extras : nullptr;
         groups.push_back(g);
-        overflow += g.alone ? count : 0;
-        if (c == four_points && !g.alone) open_tile = tile;
+        overflow += g.shares ? count : 0;
+        if (c == four_points && !g.shares) open_tile = tile;
     });
     if (last_between >= 0) colour_ends.push_back(groups.count());
 }
 
-void ColourSchedule::measure_rows(const SolverKernels& kernels, const SolverKernels& scalar_kernels) {
+void ColourSchedule::measure_rows(const SolverKernels& table) {
     size_t bytes = 0;
     auto place = [&](size_t size) {  // an offset until there is memory
         auto* at = reinterpret_cast<std::byte*>(bytes);
@@ -126,12 +130,13 @@ void ColourSchedule::measure_rows(const SolverKernels& kernels, const SolverKern
         return at;
     };
     for (ContactGroup& g : groups) {
-        const SolverKernels& table = g.alone ? scalar_kernels : kernels;
         const size_t blocks = block_count(static_cast<uint32_t>(g.count), table.width);
         g.rows = place(table.row_bytes[row_class(g.points)] * blocks);
         g.rolling = place(g.extras ? table.rolling_bytes * blocks : 0);
+        const size_t ends = g.shares ? static_cast<size_t>(g.count) * sizeof(SharedEnds) : 0;
+        g.ends = reinterpret_cast<SharedEnds*>(place(rounded_up(ends)));
     }
-    row_bytes = (bytes + Memory::alignment - 1) / Memory::alignment * Memory::alignment;
+    row_bytes = rounded_up(bytes);
 }
 
 void ColourSchedule::place_rows(std::byte* rows, const ContactRecord* records, float impulse_unit) {
@@ -140,12 +145,12 @@ void ColourSchedule::place_rows(std::byte* rows, const ContactRecord* records, f
         g.impulse_unit = impulse_unit;
         g.rows = rows + reinterpret_cast<size_t>(g.rows);
         g.rolling = g.extras ? rows + reinterpret_cast<size_t>(g.rolling) : nullptr;
+        g.ends = g.shares ? reinterpret_cast<SharedEnds*>(rows + reinterpret_cast<size_t>(g.ends)) : nullptr;
     }
 }
 
 void ColourSchedule::build(ColourSorter& sorter, const ContactEnds* ends, ContactExtra* extras, const uint32_t* list,
-                           int count, const SolverBodies& bodies, const ContactCut& cut, const SolverKernels& kernels,
-                           const SolverKernels& scalar_kernels) {
+                           int count, const SolverBodies& bodies, const ContactCut& cut, const SolverKernels& kernels) {
     groups.clear();
     tile_ends.clear();
     colour_ends.clear();
@@ -155,7 +160,7 @@ void ColourSchedule::build(ColourSorter& sorter, const ContactEnds* ends, Contac
     if (count > 0) colour(sorter, ends, count, bodies, cut);
     if (count > 0) make_groups(sorter, extras);
     while (tile_ends.count() < tiles.count) tile_ends.push_back(groups.count());
-    measure_rows(kernels, scalar_kernels);
+    measure_rows(kernels);
     if (count > 0) sorter.fill([&](uint32_t place, uint32_t i) { order[place] = list[i]; });
 }
 

@@ -3,8 +3,9 @@
 //
 // Greedy in the order of the list, lowest free colour first (Welsh, Powell 1967, without sorting). Constraints with a
 // static or kinematic body have colours of their own, solved last in every pass: what rests on the ground is then as
-// exact as an iteration can leave it. Constraints that find no free colour (a body with very many neighbours) overflow
-// and are solved one by one, of either kind for themselves: what cannot be moved is never stored to.
+// exact as an iteration can leave it. Constraints that find no free colour (a body with very many neighbours) overflow,
+// of either kind for themselves: what cannot be moved is never stored to. Contacts that do are solved with stand-ins for
+// the bodies that they share (stand_ins.h), joints one by one.
 //
 // Many bodies are cut into tiles that fit into the second-level cache with their constraints. Constraints inside a tile
 // are coloured for the tile alone, which one thread solves from end to end; those between two tiles are coloured
@@ -111,7 +112,7 @@ struct ColourSchedule {
     Tiles tiles;
     size_t row_bytes = 0;  // of all groups
     int colours = 0;       // numbers of colours given, see ContactGroup
-    int overflow = 0;      // manifolds that share bodies: one lane, one thread
+    int overflow = 0;      // manifolds that share bodies: see stand_ins.h
 
     explicit ColourSchedule(const Memory* memory)
         : order(memory), groups(memory), tile_ends(memory), colour_ends(memory) {}
@@ -119,8 +120,7 @@ struct ColourSchedule {
     // Colours `count` contacts of bodies in these tiles; `list` names their records. Where only one body of a contact
     // is moved, it is B. `extras`, by record, may be null where no contact resists rolling.
     void build(ColourSorter& sorter, const ContactEnds* ends, ContactExtra* extras, const uint32_t* list, int count,
-               const SolverBodies& bodies, const ContactCut& cut, const SolverKernels& kernels,
-               const SolverKernels& scalar_kernels);
+               const SolverBodies& bodies, const ContactCut& cut, const SolverKernels& kernels);
     // Gives the groups their rows, `row_bytes` of memory aligned to Memory::alignment; after build(), once.
     void place_rows(std::byte* rows, const ContactRecord* records, float impulse_unit);
     // Groups of a tile; of all that lies between tiles where `tile` is their count.
@@ -140,7 +140,7 @@ private:
     void colour(ColourSorter& sorter, const ContactEnds* ends, int count, const SolverBodies& bodies,
                 const ContactCut& cut) const;
     void make_groups(const ColourSorter& sorter, ContactExtra* extras);
-    void measure_rows(const SolverKernels& kernels, const SolverKernels& scalar_kernels);
+    void measure_rows(const SolverKernels& kernels);
 };
 
 }  // namespace lendulet

@@ -279,8 +279,7 @@ LENDULET_FORCE_INLINE void contact_pass(ContactRow<W, P>& c, const BodyArrays& b
 }
 
 template <int W, int P, Pass pass>
-void run_pass(const ContactGroup& g, SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
+void run_pass(const ContactGroup& g, const BodyArrays& bodies, const SubstepConstants& k, int begin, int end) {
     auto* rows = reinterpret_cast<ContactRow<W, P>*>(g.rows);
-    const BodyArrays arrays{bodies.state.data(), bodies.inertia.data(), bodies.start.data()};
-    for (int i = begin; i < end; ++i) contact_pass<W, P, pass>(rows[i], arrays, k, g, i * W);
+    for (int i = begin; i < end; ++i) contact_pass<W, P, pass>(rows[i], bodies, k, g, i * W);
 }

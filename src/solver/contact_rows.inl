@@ -91,12 +91,6 @@ struct alignas(64) RollingRow {
     Vec3T<F> running;      // see ContactExtra, m/s
 };
 
-struct BodyArrays {
-    BodyState* state;
-    const BodyInertia* inertia;
-    const BodyStart* start;
-};
-
 // Changes of velocity since the start of the step, or the velocities then.
 template <class F>
 struct WideVelocity {
@@ -253,10 +247,10 @@ struct RecordQuads {
 
 // What the velocities at the start of the step contribute to the row's.
 template <int W, int P>
-LENDULET_FORCE_INLINE void prepare_start(ContactRow<W, P>& c, const SolverBodies& bodies, const int32_t* a,
+LENDULET_FORCE_INLINE void prepare_start(ContactRow<W, P>& c, const BodyArrays& bodies, const int32_t* a,
                                          const int32_t* b) {
     using F = Wide<float, W>;
-    WideVelocity<F> A0 = load_start<W>(bodies.start.data(), a), B0 = load_start<W>(bodies.start.data(), b);
+    WideVelocity<F> A0 = load_start<W>(bodies.start, a), B0 = load_start<W>(bodies.start, b);
     c.start_slip = (B0.v - A0.v) + (cross(B0.w, c.rb) - cross(A0.w, c.ra));
     c.start_turn = c.follow * A0.w + (splat<F>(1.0f) - c.follow) * B0.w;
     c.start_approach = dot(c.n, c.start_slip);
@@ -347,7 +341,7 @@ LENDULET_FORCE_INLINE Wide<float, W> share_kept(const ContactRow<W, P>& c) {
 
 template <int W, int P>
 LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& group, const ContactRecord* records,
-                                       const SolverBodies& bodies, int first) {
+                                       const BodyArrays& bodies, int first) {
     using F = Wide<float, W>;
     const F zero = splat<F>(0.0f);
     int live = group.count - first < W ? group.count - first : W;
@@ -361,6 +355,7 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
         record.index[l] = i;
         body_a[l] = l < live ? records[i].body_a : group.filler;
         body_b[l] = l < live ? records[i].body_b : group.filler;
+        if (group.shares) body_a[l] = stand_in(first + l, 0), body_b[l] = stand_in(first + l, 1);
         const uint32_t flags = records[i].flags;
         if (!group.rolling && (flags & contact_sharp)) set_lane(sharp, l, 1.0f);
         if (flags & contact_balls) set_lane(balls, l, 1.0f);
@@ -393,10 +388,10 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     c.overdue = zero_vector<F>();
     if constexpr (P > 1) c.turn.shift[0] = c.turn.shift[1] = zero;
     prepare_start<W, P>(c, bodies, body_a, body_b);
-    WideVelocity<F> A = load_velocity_at<W>(bodies.state.data(), c.a),
-                    B = load_velocity_at<W>(bodies.state.data(), c.b);
-    SymMat3T<F> IA = load_inverse_inertia_at<W>(bodies.inertia.data(), c.a);
-    SymMat3T<F> IB = load_inverse_inertia_at<W>(bodies.inertia.data(), c.b);
+    WideVelocity<F> A = load_velocity_at<W>(bodies.state, c.a),
+                    B = load_velocity_at<W>(bodies.state, c.b);
+    SymMat3T<F> IA = load_inverse_inertia_at<W>(bodies.inertia, c.a);
+    SymMat3T<F> IB = load_inverse_inertia_at<W>(bodies.inertia, c.b);
     F inverse_masses = A.inverse_mass + B.inverse_mass;
     if constexpr (P == 1) {
         const F free = minimum(turns_freely(IA, c.ra, c.n, c.radius_a), turns_freely(IB, c.rb, c.n, c.radius_b));
@@ -419,7 +414,7 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
 }
 
 template <int W, int P>
-void prepare_rows(const ContactGroup& g, const ContactRecord* records, const SolverBodies& bodies, int begin, int end) {
+void prepare_rows(const ContactGroup& g, const ContactRecord* records, const BodyArrays& bodies, int begin, int end) {
     auto* rows = reinterpret_cast<ContactRow<W, P>*>(g.rows);
     for (int i = begin; i < end; ++i) prepare_row<W, P>(rows[i], g, records, bodies, i * W);
 }

@@ -9,20 +9,13 @@ extern const SolverKernels avx2_kernels, avx512_kernels;
 
 namespace {
 
-#if defined(__wasm__)
-// A page loads the module: there is one copy in it of what any number of lanes will do for.
-const SolverKernels one_lane = [] {
-    SolverKernels kernels = baseline_kernels_1;
-    kernels.take_common(baseline_kernels_4);
-    return kernels;
-}();
-#else
-constexpr const SolverKernels& one_lane = baseline_kernels_1;
-#endif
-
 // clang-format off
 constexpr KernelTables<SolverKernels> tables{
-    &one_lane, &baseline_kernels_4,
+#if defined(__wasm__)
+    nullptr, &baseline_kernels_4,  // a page loads the module: four lanes will do for one
+#else
+    &baseline_kernels_1, &baseline_kernels_4,
+#endif
 #if defined(LENDULET_EMULATED_LANES)
     &baseline_kernels_8, &baseline_kernels_16,
 #else

@@ -28,11 +28,27 @@ struct SubstepConstants {
     float substeps_so_far;  // of the step, this one included
 };
 
+struct SharedEnds;  // stand_ins.h
+
+// Contacts that are solved at once where they share bodies, whatever the width: results depend on it. And which stand-in
+// such a contact has for A (0) or B (1), by its place in the group.
+inline constexpr int shared_contacts = 16;
+constexpr int32_t stand_in(int place, int end) { return 2 * (place % shared_contacts) + end; }
+
+// What rows reach bodies by: those of the step, or stand-ins for some of them.
+struct BodyArrays {
+    BodyState* state;
+    const BodyInertia* inertia;
+    const BodyStart* start;
+
+    static BodyArrays of(SolverBodies& b) { return {b.state.data(), b.inertia.data(), b.start.data()}; }
+};
+
 // Manifolds of one colour and one size class: `count` of them, named by `order`, in rows from `rows` on.
 struct ContactGroup {
     int points;      // rows have room for 1, 2 or 4
     bool fixed_a;    // A is static or kinematic in all of them: not stored
-    bool alone;      // manifolds share bodies: one lane, one thread
+    bool shares;     // manifolds share bodies: their rows name stand-ins, see stand_ins.h; one thread
     int colour;      // its number: groups of one number share no body
     int32_t filler;  // reserved body for the empty lanes of the last block
     int count;
@@ -42,6 +58,7 @@ struct ContactGroup {
     float impulse_unit;    // a record's impulses are multiplied by it on their way into rows: a power of two
     std::byte* rolling;    // rows against rolling, or null
     ContactExtra* extras;  // by record, where `rolling` is not null
+    SharedEnds* ends;       // by place, where it `shares`
 };
 
 struct SolverKernels {
@@ -50,10 +67,9 @@ struct SolverKernels {
     size_t rolling_bytes;  // and of their rows against rolling
 
     // Contacts: blocks [begin, end) of a group.
-    void (*prepare)(const ContactGroup&, const ContactRecord*, const SolverBodies&, int begin, int end);
-    void (*warm_start)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
-    void (*solve)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
-    void (*relax)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int begin, int end);
+    using Pass = void (*)(const ContactGroup&, const BodyArrays&, const SubstepConstants&, int begin, int end);
+    void (*prepare)(const ContactGroup&, const ContactRecord*, const BodyArrays&, int begin, int end);
+    Pass warm_start, solve, relax;
     void (*store)(const ContactGroup&, ContactRecord*, int begin, int end);
     // What the points of one manifold of a group carry in this substep, N s; 0 where there is none.
     void (*read_impulses)(const ContactGroup&, int place, float impulses[4]);
@@ -67,16 +83,6 @@ struct SolverKernels {
     // Fills in a block, and tells which contacts of it may meet.
     void (*prepare_meetings)(MeetingBlock&, const SolverBodies&, const ContactRecord*, const MeetingContacts&);
     void (*find_meetings)(MeetingBlock&, const SolverBodies&, const SubstepConstants&);
-
-    // Takes from another table what no row is packed for: any number of lanes will do.
-    constexpr void take_common(const SolverKernels& other) {
-        begin_step = other.begin_step;
-        kick = other.kick;
-        drift = other.drift;
-        settle = other.settle;
-        prepare_meetings = other.prepare_meetings;
-        find_meetings = other.find_meetings;
-    }
 };
 
 inline int row_class(int points) { return points > 2 ? 2 : points - 1; }

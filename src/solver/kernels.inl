@@ -27,8 +27,7 @@ namespace {
 #include "solver/meetings.inl"
 
 template <int W>
-void prepare_group(const ContactGroup& g, const ContactRecord* records, const SolverBodies& bodies, int begin,
-                   int end) {
+void prepare_group(const ContactGroup& g, const ContactRecord* records, const BodyArrays& bodies, int begin, int end) {
     if (g.points == 1) prepare_rows<W, 1>(g, records, bodies, begin, end);
     else if (g.points == 2) prepare_rows<W, 2>(g, records, bodies, begin, end);
     else prepare_rows<W, 4>(g, records, bodies, begin, end);
@@ -38,13 +37,13 @@ void prepare_group(const ContactGroup& g, const ContactRecord* records, const So
     else prepare_rolling<W, 4>(g, bodies, begin, end);
 }
 template <int W, bool warm>
-void roll_group(const ContactGroup& g, SolverBodies& bodies, int begin, int end) {
+void roll_group(const ContactGroup& g, const BodyArrays& bodies, int begin, int end) {
     if (g.points == 1) run_rolling<W, 1, warm>(g, bodies, begin, end);
     else if (g.points == 2) run_rolling<W, 2, warm>(g, bodies, begin, end);
     else run_rolling<W, 4, warm>(g, bodies, begin, end);
 }
 template <int W, Pass pass>
-void pass_group(const ContactGroup& g, SolverBodies& bodies, const SubstepConstants& k, int begin, int end) {
+void pass_group(const ContactGroup& g, const BodyArrays& bodies, const SubstepConstants& k, int begin, int end) {
     if (pass != Pass::relax && g.rolling) roll_group<W, pass == Pass::warm_start>(g, bodies, begin, end);
     if (g.points == 1) run_pass<W, 1, pass>(g, bodies, k, begin, end);
     else if (g.points == 2) run_pass<W, 2, pass>(g, bodies, k, begin, end);
@@ -77,8 +76,7 @@ void read_group(const ContactGroup& g, int place, float impulses[4]) {
     else read_row<W, 4>(g, place, impulses);
 }
 
-// `whole`: also those that no row is packed for, see SolverKernels::take_common().
-template <int W, bool whole = true>
+template <int W>
 constexpr SolverKernels make_kernels() {
     SolverKernels k{};
     k.width = W;
@@ -92,14 +90,12 @@ constexpr SolverKernels make_kernels() {
     k.relax = pass_group<W, Pass::relax>;
     k.store = store_group<W>;
     k.read_impulses = read_group<W>;
-    if constexpr (whole) {
-        k.begin_step = begin_bodies<W>;
-        k.kick = kick_bodies<W>;
-        k.drift = drift_bodies<W>;
-        k.settle = settle_bodies<W>;
-        k.prepare_meetings = prepare_meetings<W>;
-        k.find_meetings = find_meetings<W>;
-    }
+    k.begin_step = begin_bodies<W>;
+    k.kick = kick_bodies<W>;
+    k.drift = drift_bodies<W>;
+    k.settle = settle_bodies<W>;
+    k.prepare_meetings = prepare_meetings<W>;
+    k.find_meetings = find_meetings<W>;
     return k;
 }
 

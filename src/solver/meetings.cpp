@@ -52,7 +52,7 @@ void Solver::watch(const WatchList& list) {
 
 void Solver::read_watched(const WatchedContact& w, float impulses[4]) const {
     const ContactGroup& group = schedule_.groups[static_cast<size_t>(w.group)];
-    (group.alone ? scalar_ : kernels_).read_impulses(group, w.place, impulses);
+    kernels_.read_impulses(group, w.place, impulses);
 }
 
 void Solver::list_foreseen(const ContactRecord* records) {

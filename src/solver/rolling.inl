@@ -15,7 +15,7 @@
 // begins with it and needs to know no more.
 
 template <int W, int P>
-void prepare_rolling(const ContactGroup& g, const SolverBodies& bodies, int begin, int end) {
+void prepare_rolling(const ContactGroup& g, const BodyArrays& bodies, int begin, int end) {
     using F = Wide<float, W>;
     auto* contacts = reinterpret_cast<ContactRow<W, P>*>(g.rows);
     auto* rows = reinterpret_cast<RollingRow<W>*>(g.rolling);
@@ -40,9 +40,9 @@ void prepare_rolling(const ContactGroup& g, const SolverBodies& bodies, int begi
             set_lane(r.running.z, l, extra.running[2]);
         }
         c.start_slip = c.start_slip + r.running;
-        r.start_spin = load_start<W>(bodies.start.data(), b).w - load_start<W>(bodies.start.data(), a).w;
-        SymMat3T<F> K = load_inverse_inertia_at<W>(bodies.inertia.data(), c.a) +
-                        load_inverse_inertia_at<W>(bodies.inertia.data(), c.b);
+        r.start_spin = load_start<W>(bodies.start, b).w - load_start<W>(bodies.start, a).w;
+        SymMat3T<F> K = load_inverse_inertia_at<W>(bodies.inertia, c.a) +
+                        load_inverse_inertia_at<W>(bodies.inertia, c.b);
         Vec3T<F> t2 = cross(c.n, c.t1), k1 = K * c.t1;
         F k11 = dot(c.t1, k1), k12 = dot(t2, k1), k22 = dot(t2, K * t2);
         F d = inverse_or_zero(k11 * k22 - k12 * k12);
@@ -86,17 +86,17 @@ LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> solve_rolling(const ContactRow<W, P>
 
 // `warm`: applies the impulses as they are.
 template <int W, int P, bool warm>
-void run_rolling(const ContactGroup& g, SolverBodies& bodies, int begin, int end) {
+void run_rolling(const ContactGroup& g, const BodyArrays& bodies, int begin, int end) {
     using F = Wide<float, W>;
     auto* contacts = reinterpret_cast<const ContactRow<W, P>*>(g.rows);
     auto* rows = reinterpret_cast<RollingRow<W>*>(g.rolling);
-    BodyState* states = bodies.state.data();
+    BodyState* states = bodies.state;
     for (int i = begin; i < end; ++i) {
         const ContactRow<W, P>& c = contacts[i];
         RollingRow<W>& r = rows[i];
         WideVelocity<F> A = load_velocity_at<W>(states, c.a), B = load_velocity_at<W>(states, c.b);
-        SymMat3T<F> IA = load_inverse_inertia_at<W>(bodies.inertia.data(), c.a),
-                    IB = load_inverse_inertia_at<W>(bodies.inertia.data(), c.b);
+        SymMat3T<F> IA = load_inverse_inertia_at<W>(bodies.inertia, c.a),
+                    IB = load_inverse_inertia_at<W>(bodies.inertia, c.b);
         Vec3T<F> t2 = cross(c.n, c.t1), turn;
         if constexpr (warm) turn = r.tangent[0] * c.t1 + r.tangent[1] * t2 + r.normal * c.n;
         else turn = solve_rolling<W, P>(c, r, t2, r.start_spin + (B.w - A.w), IA + IB);

@@ -1,5 +1,6 @@
 #include "solver/solver.h"
 
+#include "solver/stand_ins.h"
 #include "solver/impacts.h"
 
 namespace lendulet {
@@ -42,8 +43,7 @@ template <class Run>
 void Solver::run_groups(int first, int last, Run&& run) const {
     for (int i = first; i < last; ++i) {
         const ContactGroup& g = schedule_.groups[static_cast<size_t>(i)];
-        if (g.alone) run(scalar_, g, 0, g.count);
-        else run(kernels_, g, 0, static_cast<int>(block_count(static_cast<uint32_t>(g.count), kernels_.width)));
+        run(g, 0, static_cast<int>(block_count(static_cast<uint32_t>(g.count), kernels_.width)));
     }
 }
 
@@ -55,7 +55,7 @@ void Solver::for_each_between(TaskPool& tasks, Run&& run) const {
         int blocks = 0;
         for (int i = first; i < last; ++i)
             blocks += static_cast<int>(block_count(static_cast<uint32_t>(groups[i - first].count), kernels_.width));
-        if (groups->alone || tasks.sharing() == 1) {
+        if (groups->shares || tasks.sharing() == 1) {
             run_groups(first, last, run);
         } else {
             // Of every group of the colour the same share: a worker meets the same bodies in all groups and colours.
@@ -65,7 +65,7 @@ void Solver::for_each_between(TaskPool& tasks, Run&& run) const {
                     const ContactGroup& g = groups[i - first];
                     const auto n = static_cast<int>(block_count(static_cast<uint32_t>(g.count), kernels_.width));
                     const int from = n * begin / parts, to = n * end / parts;
-                    if (from < to) run(kernels_, g, from, to);
+                    if (from < to) run(g, from, to);
                 }
             });
         }
@@ -94,23 +94,26 @@ void Solver::for_each_tile(TaskPool& tasks, BodyRange range, Run&& run) const {
     });
 }
 
+void Solver::pass_group(const ContactGroup& g, int begin, int end, SolverBodies& bodies, const SubstepConstants& k,
+                        Pass pass) const {
+    if (g.shares) pass_shared(kernels_, pass, g, bodies, k);
+    else pass(g, BodyArrays::of(bodies), k, begin, end);
+}
+
 void Solver::pass_tile(int tile, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const {
     run_groups(schedule_.first_group(tile), schedule_.last_group(tile),
-               [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
-                   (kernels.*pass)(g, bodies, k, begin, end);
-               });
+               [&](const ContactGroup& g, int begin, int end) { pass_group(g, begin, end, bodies, k, pass); });
 }
 
 void Solver::pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const {
-    for_each_between(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
-        (kernels.*pass)(g, bodies, k, begin, end);
-    });
+    for_each_between(
+        tasks, [&](const ContactGroup& g, int begin, int end) { pass_group(g, begin, end, bodies, k, pass); });
 }
 
 size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const ContactEnds* ends, const uint32_t* list,
                         ContactCount count, const ContactCut& cut, ContactExtra* extras) {
     extras_ = extras;
-    schedule_.build(sorter, ends, extras, list, count.rows, bodies, cut, kernels_, scalar_);
+    schedule_.build(sorter, ends, extras, list, count.rows, bodies, cut, kernels_);
     impacts_.clear();
     for (int i = 0; i < count.all; ++i) {
         // In a crowd what carries a load goes on by rows.
@@ -126,8 +129,9 @@ void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord*
                      float impulse_unit) {
     schedule_.place_rows(rows, records, impulse_unit);
     const TaskPool::Alone alone(tasks, is_small(bodies.count));
-    for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
-        kernels.prepare(g, records, bodies, begin, end);
+    for_each_group(tasks, [&](const ContactGroup& g, int begin, int end) {
+        if (g.shares) prepare_shared(kernels_, g, records, bodies);
+        else kernels_.prepare(g, records, BodyArrays::of(bodies), begin, end);
     });
 }
 
@@ -143,7 +147,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
                    BodyRange range) {
     if (range.begin >= range.end) return;
     const TaskPool::Alone alone(tasks, is_small(range.end - range.begin));
-    const Pass warm_start = &SolverKernels::warm_start, solve = &SolverKernels::solve, relax = &SolverKernels::relax;
+    const Pass warm_start = kernels_.warm_start, solve = kernels_.solve, relax = kernels_.relax;
     SubstepConstants k = substep_constants(settings);
     k.joints = !joints_.empty();
     for_each_tile(tasks, range, [&](int, BodyRange r) { kernels_.begin_step(bodies, r.begin, r.end); });
@@ -213,9 +217,8 @@ void Solver::coast(TaskPool& tasks, const SolverSettings& settings, SolverBodies
 
 void Solver::store(TaskPool& tasks, const SolverBodies& bodies, ContactRecord* records) {
     const TaskPool::Alone alone(tasks, is_small(bodies.count));
-    for_each_group(tasks, [&](const SolverKernels& kernels, const ContactGroup& g, int begin, int end) {
-        kernels.store(g, records, begin, end);
-    });
+    for_each_group(
+        tasks, [&](const ContactGroup& g, int begin, int end) { kernels_.store(g, records, begin, end); });
     const int first = impacts_.count() - passing_;
     tasks.for_each(passing_, contacts_per_part, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i)

@@ -53,8 +53,7 @@ public:
           foreseen_(memory),
           watched_meetings_(memory),
           joints_(memory, width),
-          kernels_(solver_kernels(width)),
-          scalar_(solver_kernels(1)) {}
+          kernels_(solver_kernels(width)) {}
 
     // Colours manifolds by their ends; `list` names their records. `extras`, by record: see ContactExtra; null where no
     // material has any. `cut`: of the bodies that solve() is given. Returns the bytes of rows that prepare() is to be
@@ -125,7 +124,7 @@ private:
     // Calls run(tile, bodies) for every tile, or for parts of the only one.
     template <class Run>
     void for_each_tile(TaskPool& tasks, BodyRange range, Run&& run) const;
-    using Pass = void (*SolverKernels::*)(const ContactGroup&, SolverBodies&, const SubstepConstants&, int, int);
+    using Pass = SolverKernels::Pass;
     // Which of `impacts_` may meet in this substep; prepares what of it is to be asked.
     void find_meetings(TaskPool& tasks, const SolverBodies& bodies, const ContactRecord* records,
                        const SubstepConstants& k);
@@ -137,6 +136,8 @@ private:
     void note_watched(TaskPool& tasks, SolverBodies& bodies, const ContactRecord* records, float h, bool last) const;
     // Of the row of a watched contact: what its points carry, N s.
     void read_watched(const WatchedContact& contact, float impulses[4]) const;
+    void pass_group(const ContactGroup& group, int begin, int end, SolverBodies& bodies, const SubstepConstants& k,
+                    Pass pass) const;
     void pass_tile(int tile, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
     void pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const;
 
@@ -151,7 +152,6 @@ private:
     Array<MeetingBlock> watched_meetings_;  // of these
     JointSolver joints_;
     const SolverKernels& kernels_;
-    const SolverKernels& scalar_;
 };
 
 }  // namespace lendulet

@@ -23,7 +23,7 @@ void JointSolver::for_each_group(TaskPool& tasks, Run&& run) const {
         const JointGroup& g = schedule_.groups[static_cast<size_t>(i)];
         size_t type = static_cast<size_t>(g.type);
         if (i >= schedule_.first_overflow_group) {
-            run(scalar_.of[type], g, 0, g.count);
+            run(scalar_.of[type], g, 0, 1);
             continue;
         }
         int blocks = static_cast<int>(block_count(static_cast<uint32_t>(g.count), table_.width));

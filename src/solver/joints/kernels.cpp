@@ -11,7 +11,11 @@ namespace {
 
 // clang-format off
 constexpr KernelTables<JointTable> tables{
+#if defined(__wasm__)
+    nullptr, &baseline_joints_4,  // see solver/kernels.cpp
+#else
     &baseline_joints_1, &baseline_joints_4,
+#endif
 #if defined(LENDULET_EMULATED_LANES)
     &baseline_joints_8, &baseline_joints_16,
 #else

@@ -141,8 +141,11 @@ void JointSchedule::colour(const JointRecord* records, int count, const SolverBo
     sorter_.for_each_group([&](int, int colour, int c, uint32_t begin, uint32_t n) {
         bool overflows = ColourSorter::overflows(colour);
         if (overflows && first_overflow_group < 0) first_overflow_group = groups.count();
-        groups.push_back(group_of(c / (side_kinds * modes), c / modes % side_kinds, c % modes == 1, static_cast<int>(n),
-                                  order.data() + begin, bytes, overflows ? scalar_table : table));
+        const uint32_t each = overflows ? 1 : n;  // those that share bodies are groups of one
+        for (uint32_t first = begin; first < begin + n; first += each)
+            groups.push_back(group_of(c / (side_kinds * modes), c / modes % side_kinds, c % modes == 1,
+                                      static_cast<int>(each), order.data() + first, bytes,
+                                      overflows ? scalar_table : table));
     });
     if (first_overflow_group < 0) first_overflow_group = groups.count();
     rows.resize_unset(bytes);

@@ -24,7 +24,7 @@ struct JointSchedule {
     Array<uint32_t> order;     // indices of records, by group
     Array<JointGroup> groups;  // in the order in which they are solved
     Array<std::byte> rows;
-    int first_overflow_group = 0;  // groups from here on hold joints that share bodies: one lane, one thread
+    int first_overflow_group = 0;  // groups from here on hold one joint each, whose bodies others share
 
     explicit JointSchedule(const Memory* memory)
         : order(memory),
