@@ -20,7 +20,6 @@ lendulet_result add(World& world, const RigidBodyDef& def, lendulet_body* out) {
     return 0;
 }
 
-bool moves(const World& world, BodyId id) { return world.alive(id) && world.get_static(id).type() != BodyType::fixed; }
 bool is_dynamic(const World& world, BodyId id) {
     return world.alive(id) && world.get_static(id).type() == BodyType::dynamic;
 }
@@ -89,33 +88,6 @@ lendulet_result lendulet_add_fixed_box(lendulet_world* world, const float half_e
 lendulet_result lendulet_remove_body(lendulet_world* world, lendulet_body body) {
     if (!world) return refuse_null("remove_body");
     return result_of(world->scene.world.remove_body(id_of(body)));
-}
-
-lendulet_result lendulet_set_velocity(lendulet_world* world, lendulet_body body, const float velocity[3]) {
-    if (!world || !velocity) return refuse_null("set_velocity");
-    if (!moves(world->scene.world, id_of(body))) return refuse_body("set_velocity");
-    return result_of(world->scene.world.get(id_of(body)).set_velocity(vector(velocity)));
-}
-
-lendulet_result lendulet_apply_impulse(lendulet_world* world, lendulet_body body, const float impulse[3],
-                                       const float point[3]) {
-    if (!world || !impulse || !point) return refuse_null("apply_impulse");
-    if (!moves(world->scene.world, id_of(body))) return refuse_body("apply_impulse");
-    return result_of(world->scene.world.get(id_of(body)).apply_impulse(vector(impulse), position(point)));
-}
-
-lendulet_result lendulet_cast_ray(const lendulet_world* world, const float origin[3], const float translation[3],
-                                  lendulet_hit* out) {
-    if (!world || !origin || !translation || !out) return refuse_null("cast_ray");
-    Result<QueryHit> hit = world->scene.world.cast_ray({position(origin), vector(translation)});
-    if (!hit) return refuse(hit.error());
-    *out = {};
-    if (!hit.value()) return 0;
-    out->body = number_of(hit.value().body);
-    out->fraction = hit.value().fraction;
-    put(out->point, hit.value().point);
-    put(out->normal, hit.value().normal);
-    return 1;
 }
 
 lendulet_result lendulet_grab(lendulet_world* world, lendulet_body body, const float point[3]) {

@@ -6,7 +6,6 @@ using namespace lendulet::c;
 
 namespace {
 
-Quat rotation(const float* q) { return {q[0], q[1], q[2], q[3]}; }
 Transform frame(const float* at, const float* q) { return {vector(at), rotation(q)}; }
 
 lendulet_result keep(lendulet_world& world, Shape shape) {
@@ -14,51 +13,8 @@ lendulet_result keep(lendulet_world& world, Shape shape) {
     return static_cast<lendulet_result>(world.given.size() - 1);
 }
 
-Status set_given_shape(const lendulet_world& world, const lendulet_part& p, Shape& out) {
-    const size_t index = static_cast<size_t>(p.mesh);
-    const bool there = p.mesh >= 0 && index < world.given.size();
-    if ((p.type == LENDULET_HULL && there && std::holds_alternative<ConvexHull>(world.given[index])) ||
-        (p.type == LENDULET_MESH && there && std::holds_alternative<TriangleMesh>(world.given[index]))) {
-        out = world.given[index];
-        return {};
-    }
-    return Error{ErrorCode::bad_mesh, "add_body: there is no such hull or mesh"};
-}
-
-Status set_shape(const lendulet_world& world, const lendulet_part& p, Shape& out) {
-    const float *s = p.size, r = p.rounding;
-    switch (p.type) {
-        case LENDULET_SPHERE:
-            out = Sphere{s[0]};
-            return {};
-        case LENDULET_CAPSULE:
-            out = Capsule{s[0], s[1]};
-            return {};
-        case LENDULET_TAPERED_CAPSULE:
-            out = TaperedCapsule{s[0], s[1], s[2]};
-            return {};
-        case LENDULET_BOX:
-            out = Box{vector(s), r};
-            return {};
-        case LENDULET_CYLINDER:
-            out = Cylinder{s[0], s[1], r};
-            return {};
-        case LENDULET_TAPERED_CYLINDER:
-            out = TaperedCylinder{s[0], s[1], s[2], r};
-            return {};
-        case LENDULET_CONE:
-            out = Cone{s[0], s[1], r};
-            return {};
-        case LENDULET_PLANE:
-            out = Plane{vector(s), s[3]};
-            return {};
-        default:
-            return set_given_shape(world, p, out);
-    }
-}
-
 Status read_part(const lendulet_world& world, const lendulet_part& p, ColliderDef& def) {
-    if (Status s = set_shape(world, p, def.shape); !s) return s;
+    if (Status s = set_shape(world, p, "add_body", def.shape); !s) return s;
     def.local = frame(p.position, p.orientation);
     def.density = p.density;
     def.is_trigger = p.trigger != 0;
@@ -97,6 +53,36 @@ Result<BodyId> add(World& world, const lendulet_body_definition& d, std::span<co
 }  // namespace
 
 extern "C" {
+
+void lendulet_default_part(lendulet_part* out) {
+    if (!out) return;
+    *out = {};
+    out->type = LENDULET_SPHERE;
+    out->mesh = -1;
+    out->size[0] = 0.5f;
+    out->orientation[3] = 1.0f;
+    out->density = 1000.0f;
+    out->friction = out->restitution = -1.0f;
+}
+
+void lendulet_default_body(lendulet_body_definition* out) {
+    if (!out) return;
+    *out = {};
+    out->orientation[3] = 1.0f;
+    out->gravity_factor = 1.0f;
+    out->type = LENDULET_DYNAMIC;
+}
+
+void lendulet_default_joint(lendulet_joint_definition* out) {
+    const JointDef usual;
+    if (!out) return;
+    *out = {};
+    out->type = LENDULET_BALL;
+    out->orientation_a[3] = out->orientation_b[3] = 1.0f;
+    out->limit[0] = usual.limit.lower, out->limit[1] = usual.limit.upper;
+    out->twist[0] = usual.twist_limit.lower, out->twist[1] = usual.twist_limit.upper;
+    out->swing = usual.swing_limit;
+}
 
 lendulet_result lendulet_add_hull(lendulet_world* world, const float* points, int32_t count, float rounding) {
     if (!world || !points || count < 0) return refuse_null("add_hull");

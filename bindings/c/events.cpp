@@ -86,6 +86,24 @@ lendulet_result lendulet_set_body_type(lendulet_world* world, lendulet_body body
     return result_of(w.get(id_of(body)).set_type(known ? static_cast<BodyType>(type) : BodyType::fixed));
 }
 
+lendulet_result lendulet_remove_joint(lendulet_world* world, lendulet_joint joint) {
+    if (!world) return refuse_null("remove_joint");
+    return result_of(world->scene.world.remove_joint(id_of<JointId>(joint)));
+}
+
+lendulet_result lendulet_set_material(lendulet_world* world, lendulet_shape shape, const lendulet_material* material) {
+    if (!world || !material) return refuse_null("set_material");
+    const lendulet_material& m = *material;
+    Material to;
+    if (!(m.static_friction < 0.0f)) to.static_friction = m.static_friction;
+    if (!(m.dynamic_friction < 0.0f)) to.dynamic_friction = m.dynamic_friction;
+    if (!(m.restitution < 0.0f)) to.restitution = m.restitution;
+    to.rolling_friction = m.rolling_friction, to.spinning_friction = m.spinning_friction;
+    to.tangential_restitution = m.tangential_restitution;
+    to.surface_velocity = vector(m.surface_velocity);
+    return result_of(world->scene.world.set_material(id_of<ColliderId>(shape), to));
+}
+
 lendulet_result lendulet_set_filter(lendulet_world* world, lendulet_shape shape, uint64_t category, uint64_t mask,
                                     uint32_t group) {
     if (!world) return refuse_null("set_filter");

@@ -37,6 +37,7 @@ struct lendulet_world {
     std::vector<lendulet_blow> hits;
     std::vector<lendulet_sleep> sleeps;
     std::vector<lendulet_break> breaks;
+    std::vector<lendulet_body> overlaps;
     std::vector<lendulet::Shape> given;  // hulls and meshes for parts
 };
 
@@ -62,6 +63,10 @@ inline Position position(const float* v) { return {v[0], v[1], v[2]}; }
 inline void put(float* out, Vec3 v) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
 inline void put(float* out, Position p) { put(out, from_origin(p)); }
 inline void put(float* out, Quat q) { out[0] = q.x, out[1] = q.y, out[2] = q.z, out[3] = q.w; }
+
+inline Quat rotation(const float* q) { return {q[0], q[1], q[2], q[3]}; }
+// The shape of a part; `call` is who asks.
+Status set_shape(const lendulet_world& world, const lendulet_part& part, const char* call, Shape& out);
 
 // The force of the grip, before a step.
 void pull(lendulet_world& world);

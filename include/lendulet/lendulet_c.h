@@ -23,7 +23,7 @@ extern "C" {
 #endif
 
 /* Number of this interface; changes where a call or a structure does. */
-#define LENDULET_C_VERSION 3
+#define LENDULET_C_VERSION 4
 uint32_t lendulet_version(void);
 
 typedef struct lendulet_world lendulet_world;
@@ -129,10 +129,24 @@ lendulet_result lendulet_add_sphere(lendulet_world* world, float radius, const f
 lendulet_result lendulet_add_fixed_box(lendulet_world* world, const float half_extents[3], const float position[3],
                                        lendulet_body* out);
 lendulet_result lendulet_remove_body(lendulet_world* world, lendulet_body body);
+/* Of bodies that move: see RigidBodyRef. Orientations are x y z w, velocities m/s and rad/s. */
+lendulet_result lendulet_set_pose(lendulet_world* world, lendulet_body body, const float at[3],
+                                  const float orientation[4]);
 lendulet_result lendulet_set_velocity(lendulet_world* world, lendulet_body body, const float velocity[3]);
+lendulet_result lendulet_set_angular_velocity(lendulet_world* world, lendulet_body body, const float velocity[3]);
 /* N s at a point of the world. */
 lendulet_result lendulet_apply_impulse(lendulet_world* world, lendulet_body body, const float impulse[3],
                                        const float point[3]);
+/* N at a point of the world, and N m, both during the next step. */
+lendulet_result lendulet_apply_force(lendulet_world* world, lendulet_body body, const float force[3],
+                                     const float point[3]);
+lendulet_result lendulet_apply_torque(lendulet_world* world, lendulet_body body, const float torque[3]);
+/* Gives a kinematic body the velocities by which the next lendulet_step() takes it there. */
+lendulet_result lendulet_move_to(lendulet_world* world, lendulet_body body, const float at[3],
+                                 const float orientation[4]);
+/* 1/s; times the world's gravity. */
+lendulet_result lendulet_set_damping(lendulet_world* world, lendulet_body body, float linear, float angular);
+lendulet_result lendulet_set_gravity_factor(lendulet_world* world, lendulet_body body, float factor);
 
 /* --- shapes: read once, and again when bodies came or went ---------------------------------------------------------
  */
@@ -229,6 +243,13 @@ typedef struct lendulet_joint_definition {
 
 lendulet_result lendulet_add_joint(lendulet_world* world, const lendulet_joint_definition* definition);
 
+/* Fill in what a definition should begin with: no turn, a density of 1000 kg/m^3, the world's friction and restitution,
+ * gravity, free limits; a dynamic body, a sphere of 0.5 m, a ball joint. All zeros would be accepted too, and mean
+ * something else: weightless, without friction, locked. */
+void lendulet_default_part(lendulet_part* out);
+void lendulet_default_body(lendulet_body_definition* out);
+void lendulet_default_joint(lendulet_joint_definition* out);
+
 /* --- changes -------------------------------------------------------------------------------------------------------
  */
 
@@ -264,6 +285,16 @@ lendulet_result lendulet_set_limit(lendulet_world* world, lendulet_joint joint, 
                                    float upper);
 /* LENDULET_KINEMATIC or LENDULET_DYNAMIC: see RigidBodyRef::set_type(). */
 lendulet_result lendulet_set_body_type(lendulet_world* world, lendulet_body body, int32_t type);
+lendulet_result lendulet_remove_joint(lendulet_world* world, lendulet_joint joint);
+
+/* See Material. Negative friction and restitution are the world's. */
+typedef struct lendulet_material {
+    float static_friction, dynamic_friction, restitution;
+    float rolling_friction, spinning_friction; /* m */
+    float tangential_restitution;
+    float surface_velocity[3]; /* over the body, in the shape's frame, m/s: a conveyor belt's */
+} lendulet_material;
+lendulet_result lendulet_set_material(lendulet_world* world, lendulet_shape shape, const lendulet_material* material);
 /* See World::set_filter(). */
 lendulet_result lendulet_set_filter(lendulet_world* world, lendulet_shape shape, uint64_t category, uint64_t mask,
                                     uint32_t group);
@@ -390,6 +421,13 @@ typedef struct lendulet_hit {
 /* The first body along origin + t * translation, t from 0 to 1; triggers are not seen. 1: there is one, 0: none. */
 lendulet_result lendulet_cast_ray(const lendulet_world* world, const float origin[3], const float translation[3],
                                   lendulet_hit* out);
+
+/* The first body that a convex part meets on its way along the translation, from where the part's place and turn, here
+ * in the world, put it. 1: there is one, 0: none. */
+lendulet_result lendulet_cast_shape(const lendulet_world* world, const lendulet_part* part, const float translation[3],
+                                    lendulet_hit* out);
+/* All bodies that such a part overlaps or touches, each once. */
+lendulet_result lendulet_read_overlaps(lendulet_world* world, const lendulet_part* part, const lendulet_body** out);
 
 /* Pulls a point of a dynamic body as by a damped spring: the point of the world at which it is taken rides with the
  * body, and every step pulls it towards the target of lendulet_drag(). One body at a time. */

@@ -15,6 +15,7 @@ const char* test_building(void);
 const char* test_forks_and_settings(void);
 const char* test_structures(void);
 const char* test_changes_and_events(void);
+const char* test_steering(void);
 const char* test_refusals(void);
 
 #define TEXT(x) #x
@@ -411,6 +412,73 @@ const char* test_changes_and_events(void) {
     EXPECT(broken == 1 && lendulet_read_joint_numbers(world, &joints) == 0);
     EXPECT(lendulet_set_motor(world, joint, LENDULET_ONLY, 1.0f, 1.0f) < 0);
     EXPECT(lendulet_read_hits(NULL, &hits) < 0 && lendulet_read_sleep_events(world, NULL) < 0);
+    lendulet_destroy(world);
+    return NULL;
+}
+
+/* A ball on a belt that is started, pushed, put elsewhere, and asked for; a crank that is let go. */
+const char* test_steering(void) {
+    const float up[3] = {0.0f, 0.5f, 0.0f}, away[3] = {5.0f, 0.5f, 0.0f}, turned[4] = {0.0f, 1.0f, 0.0f, 0.0f};
+    const float bad[3] = {NAN, 0.0f, 0.0f}, push[3] = {1000.0f, 0.0f, 0.0f}, ahead[3] = {4.5f, 0.0f, 0.0f};
+    const float spin[3] = {0.0f, 3.0f, 0.0f}, lift[3] = {0.0f, 1.5f, 0.0f};
+    lendulet_material belt = {-1.0f, -1.0f, -1.0f, 0.0f, 0.0f, 0.0f, {0.0f, 0.0f, 3.5f}};
+    lendulet_body_definition definition;
+    lendulet_joint_definition joint;
+    lendulet_part part;
+    lendulet_body ball = 0, platform = 0;
+    const lendulet_body *bodies, *overlaps;
+    const lendulet_shape* shapes;
+    const lendulet_joint* joints;
+    lendulet_body_state state;
+    lendulet_hit hit;
+    lendulet_world* world = with_floor();
+    EXPECT(world != NULL && lendulet_add_sphere(world, 0.5f, up, at_rest, 1000.0f, &ball) == 0);
+    EXPECT(lendulet_read_bodies(world, &bodies) == 2);
+    EXPECT(lendulet_read_shapes(world, bodies[0], &shapes) == 1);
+    EXPECT(lendulet_set_material(world, shapes[0], &belt) == 0 && lendulet_set_material(world, 0, &belt) < 0);
+    EXPECT(lendulet_set_material(world, shapes[0], NULL) < 0);
+    EXPECT(run(world, 120) && lendulet_read_body(world, ball, &state) == 0);
+    EXPECT(fabsf(state.velocity[2] - 1.0f) < 0.01f); /* 2/7 of the belt's */
+    EXPECT(lendulet_set_pose(world, ball, away, turned) == 0 && lendulet_set_pose(world, ball, bad, turned) < 0);
+    EXPECT(lendulet_set_angular_velocity(world, ball, spin) == 0 && lendulet_set_velocity(world, ball, at_rest) == 0);
+    EXPECT(lendulet_read_body(world, ball, &state) == 0);
+    EXPECT(state.position[0] == 5.0f && state.orientation[1] == 1.0f &&
+           fabsf(state.angular_velocity[1] - 3.0f) < 1e-5f);
+    belt.surface_velocity[2] = 0.0f;
+    EXPECT(lendulet_set_material(world, shapes[0], &belt) == 0);
+    EXPECT(lendulet_set_gravity_factor(world, ball, 0.0f) == 0 && lendulet_set_damping(world, ball, -1.0f, 0.0f) < 0);
+    EXPECT(lendulet_apply_force(world, ball, push, away) == 0 && lendulet_apply_torque(world, ball, push) == 0);
+    EXPECT(run(world, 1) && lendulet_read_body(world, ball, &state) == 0);
+    EXPECT(fabsf(state.velocity[0] * state.mass - 1000.0f / 60.0f) < 1.0f);
+    EXPECT(lendulet_apply_force(world, bodies[0], push, away) < 0 && lendulet_apply_torque(world, 0, push) < 0);
+
+    lendulet_default_part(&part);
+    part.position[1] = 0.6f;
+    EXPECT(lendulet_cast_shape(world, &part, ahead, &hit) == 1 && hit.body == ball);
+    EXPECT(fabsf(hit.fraction - 0.89f) < 0.01f && hit.normal[0] < -0.9f);
+    EXPECT(lendulet_cast_shape(world, &part, at_rest, &hit) < 0 && lendulet_cast_shape(world, NULL, ahead, &hit) < 0);
+    part.position[1] = 0.4f;
+    EXPECT(lendulet_read_overlaps(world, &part, &overlaps) == 1);
+    EXPECT(lendulet_read_bodies(world, &bodies) == 2 && overlaps[0] == bodies[0]);
+    part.type = LENDULET_HULL;
+    EXPECT(lendulet_read_overlaps(world, &part, &overlaps) < 0 && strstr(lendulet_error(), "read_overlaps") != NULL);
+
+    lendulet_default_body(&definition);
+    lendulet_default_part(&part);
+    definition.type = LENDULET_KINEMATIC;
+    definition.position[1] = 1.0f, definition.position[2] = 4.0f;
+    EXPECT(lendulet_add_body(world, &definition, &part, 1, &platform) == 0);
+    definition.position[1] = 2.0f;
+    EXPECT(lendulet_move_to(world, platform, lift, definition.orientation) == 0);
+    EXPECT(run(world, 1) && lendulet_read_body(world, platform, &state) == 0);
+    EXPECT(fabsf(state.position[1] - 1.5f) < 1e-4f && fabsf(state.position[2]) < 1e-4f);
+
+    lendulet_default_joint(&joint);
+    joint.body_a = platform, joint.body_b = ball;
+    EXPECT(lendulet_add_joint(world, &joint) == 0 && lendulet_read_joint_numbers(world, &joints) == 1);
+    EXPECT(lendulet_remove_joint(world, joints[0]) == 0 && lendulet_read_joint_numbers(world, &joints) == 0);
+    EXPECT(lendulet_remove_joint(world, 0) < 0);
+    lendulet_default_part(NULL), lendulet_default_body(NULL), lendulet_default_joint(NULL);
     lendulet_destroy(world);
     return NULL;
 }

@@ -14,6 +14,7 @@ const char* test_building(void);
 const char* test_forks_and_settings(void);
 const char* test_structures(void);
 const char* test_changes_and_events(void);
+const char* test_steering(void);
 const char* test_refusals(void);
 }
 
@@ -31,6 +32,7 @@ TEST(CInterface, BuildsBodiesAndJoints) { passes(test_building()); }
 TEST(CInterface, ForksAndTunes) { passes(test_forks_and_settings()); }
 TEST(CInterface, ShowsItsStructures) { passes(test_structures()); }
 TEST(CInterface, ChangesAndTells) { passes(test_changes_and_events()); }
+TEST(CInterface, SteersBodiesAndAsks) { passes(test_steering()); }
 TEST(CInterface, RefusesWithASentence) { passes(test_refusals()); }
 
 TEST(CInterface, ComputesWhatTheCppInterfaceDoes) {
