@@ -6,8 +6,8 @@
 // normal are (1 u v) g and the answers to impulses there (1 u v) K (1 u v)^T. What carries acts at one point among them,
 // and an impact at that point alone is theirs.
 
-// The gaps of points that meet at once differ by at most this much in parts of their distance: bodies that give way by
-// as much in an impact do not tell.
+// Points that meet at once do so within the time in which the fastest goes this part of their distance: bodies that
+// give way by as much in an impact do not tell.
 constexpr float flat_slope = 0.004f;
 
 struct FacePoints {
@@ -110,14 +110,14 @@ bool meet_at_once(Side& a, Side& b, const ContactRecord& r, bool fresh, const Co
                   const SubstepConstants& k, ContactPointRecord& where) {
     int places[4], count = 0;
     Vec3 arm_a[4], arm_b[4], middle_a, middle_b;
-    float least = far_separation, most = -far_separation, fastest = 0.0f;
+    float first = k.h, last = 0.0f, fastest = 0.0f;
     Face face;
     for (int j = 0; j < r.point_count; ++j) {
         if (fresh && r.normal_impulse[j] > 0.0f) continue;
         const Nearing near = nearing_of(a, b, r, r.points[j], k.h);
         if (near.first.time > k.h || !(near.first.speed > 0.0f)) continue;
-        const float gap = near.first.time * near.first.speed;
-        least = minimum(least, gap), most = maximum(most, gap), fastest = maximum(fastest, near.first.speed);
+        first = minimum(first, near.first.time), last = maximum(last, near.first.time);
+        fastest = maximum(fastest, near.first.speed);
         face.n = near.normal;
         middle_a += a.now.core, middle_b += b.now.core;
         arm_a[count] = a.now.core, arm_b[count] = b.now.core;
@@ -137,7 +137,7 @@ bool meet_at_once(Side& a, Side& b, const ContactRecord& r, bool fresh, const Co
         spread = maximum(spread, length(off));
         f.at[i][0] = 1.0, f.at[i][1] = dot(off, face.x), f.at[i][2] = dot(off, face.y);
     }
-    if (!(most - least < flat_slope * spread)) return false;
+    if (!((last - first) * fastest < flat_slope * spread)) return false;
     face.set_answers(f);
     // Friction tilts the body too, and where the impact acts follows from that.
     double pushed[3] = {0.0, 0.0, 0.0};
