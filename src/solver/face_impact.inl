@@ -1,4 +1,4 @@
-// Points of a manifold that meet at once: a box that lands flat. Part of impacts.cpp.
+// Points of two bodies that meet at once: a box that lands flat, a table on its four legs. Part of impacts.cpp.
 //
 // Taken one after the other the first corner alone would turn the body round. Newton's law for all of them at once
 // (Moreau 1988) is that each leaves e times as fast as it came, or faster if it carries nothing: a linear
@@ -10,10 +10,12 @@
 // give way by as much in an impact do not tell.
 constexpr float flat_slope = 0.004f;
 
+constexpr int most_met = 32, most_carrying = 8;
+
 struct FacePoints {
     int count = 0;
-    double at[4][3];  // 1, u, v
-    double weight[4];
+    double at[most_carrying][3];  // 1, u, v
+    double weight[most_carrying];
     double K[3][3];
     double approach[3];  // g, before the impact, m/s
 };
@@ -25,13 +27,9 @@ double answer(const FacePoints& f, int i, int j) {
     return in_plane(f.at[i], along);
 }
 
-// Whether the points named by the bits of `carrying`, at most three, can carry what all want of velocity: their loads.
-bool try_carrying(const FacePoints& f, unsigned carrying, const double wanted[4], double most, double load[4]) {
-    int points[3], n = 0;
-    for (int i = 0; i < f.count; ++i) {
-        load[i] = 0.0;
-        if (carrying >> i & 1u) points[n++] = i;
-    }
+// Whether `n` points, at most three, can carry what all want of velocity: their loads.
+bool try_carrying(const FacePoints& f, const int points[3], int n, const double wanted[most_carrying], double most,
+                  double load[3]) {
     double m[3][4];
     for (int i = 0; i < n; ++i) {
         for (int j = 0; j < n; ++j) m[i][j] = answer(f, points[i], points[j]);
@@ -45,10 +43,10 @@ bool try_carrying(const FacePoints& f, unsigned carrying, const double wanted[4]
         }
     }
     for (int i = 0; i < n; ++i)
-        if (!((load[points[i]] = m[i][3] / m[i][i]) >= 0.0)) return false;
+        if (!((load[i] = m[i][3] / m[i][i]) >= 0.0)) return false;
     for (int i = 0; i < f.count; ++i) {
         double got = 0.0;
-        for (int j = 0; j < n; ++j) got += answer(f, i, points[j]) * load[points[j]];
+        for (int j = 0; j < n; ++j) got += answer(f, i, points[j]) * load[j];
         if (!(got >= wanted[i] - 1e-4 * most)) return false;
     }
     return true;
@@ -56,19 +54,29 @@ bool try_carrying(const FacePoints& f, unsigned carrying, const double wanted[4]
 
 // Finds who carries how much of an impact, as weights; `pushed` is what friction adds to g.
 bool share_impact(FacePoints& f, float restitution, const double pushed[3]) {
-    constexpr unsigned sets[] = {7, 11, 13, 14, 3, 5, 6, 9, 10, 12, 1, 2, 4, 8};
-    double wanted[4], most = 0.0, load[4];
+    double wanted[most_carrying], most = 0.0, load[3];
     for (int i = 0; i < f.count; ++i) {
         wanted[i] = -(1.0 + static_cast<double>(restitution)) * in_plane(f.at[i], f.approach) - in_plane(f.at[i], pushed);
         most = wanted[i] > most ? wanted[i] : most;
+        f.weight[i] = 0.0;
     }
-    for (unsigned carrying : sets) {
-        if (carrying >> f.count != 0 || !try_carrying(f, carrying, wanted, most, load)) continue;
+    auto found = [&](const int points[3], int n) {
+        if (!try_carrying(f, points, n, wanted, most, load)) return false;
         double sum = 0.0;
-        for (int i = 0; i < f.count; ++i) sum += load[i];
-        if (!(sum > 0.0)) return false;
-        for (int i = 0; i < f.count; ++i) f.weight[i] = load[i] / sum;
-        return true;
+        for (int i = 0; i < n; ++i) sum += load[i];
+        for (int i = 0; i < n && sum > 0.0; ++i) f.weight[points[i]] = load[i] / sum;
+        return sum > 0.0;
+    };
+    for (int n = f.count < 3 ? f.count : 3; n > 0; --n) {
+        int points[3] = {0, 1, 2};
+        for (;;) {
+            if (found(points, n)) return true;
+            int last = n - 1;  // the next set of n, in order
+            while (last >= 0 && points[last] == f.count - n + last) --last;
+            if (last < 0) break;
+            ++points[last];
+            for (int i = last + 1; i < n; ++i) points[i] = points[i - 1] + 1;
+        }
     }
     return false;
 }
@@ -104,57 +112,119 @@ struct Face {
     }
 };
 
-// Whether at least two points of the manifold meet at once, and the point where their impact acts. Of `fresh` ones
-// those that have carried nothing.
-bool meet_at_once(Side& a, Side& b, const ContactRecord& r, bool fresh, const ContactExtra* extra,
-                  const SubstepConstants& k, ContactPointRecord& where) {
-    int places[4], count = 0;
-    Vec3 arm_a[4], arm_b[4], middle_a, middle_b;
-    float first = k.h, last = 0.0f, fastest = 0.0f;
-    Face face;
-    for (int j = 0; j < r.point_count; ++j) {
-        if (fresh && r.normal_impulse[j] > 0.0f) continue;
-        const Nearing near = nearing_of(a, b, r, r.points[j], k.h);
-        if (near.first.time > k.h || !(near.first.speed > 0.0f)) continue;
-        first = minimum(first, near.first.time), last = maximum(last, near.first.time);
-        fastest = maximum(fastest, near.first.speed);
-        face.n = near.normal;
-        middle_a += a.now.core, middle_b += b.now.core;
-        arm_a[count] = a.now.core, arm_b[count] = b.now.core;
-        places[count++] = j;
+// Points that meet in this substep, of all contacts between two bodies.
+struct MetPoints {
+    int count = 0;
+    float time[most_met], speed[most_met], separation[most_met];
+    Vec3 arm_a[most_met], arm_b[most_met];
+    Vec3 start[most_met];  // from B, when the step began
+
+    void add(Side& a, Side& b, const ContactRecord& r, bool fresh, float h) {
+        for (int j = 0; j < r.point_count && count < most_met; ++j) {
+            if (fresh && r.normal_impulse[j] > 0.0f) continue;
+            const Nearing near = nearing_of(a, b, r, r.points[j], h);
+            if (near.first.time > h || !(near.first.speed > 0.0f)) continue;
+            time[count] = near.first.time, speed[count] = near.first.speed;
+            separation[count] = r.points[j].separation;
+            arm_a[count] = a.now.core, arm_b[count] = b.now.core;
+            start[count++] = load(r.points[j].position) - load(r.arm_offset);
+        }
     }
-    if (count < 2 || !(fastest >= slowest_bounce(r) * k.bounce_speed)) return false;
-    const float share = 1.0f / static_cast<float>(count);
-    face.m.a = a.now, face.m.b = b.now;
-    face.m.a.arm = share * middle_a, face.m.b.arm = share * middle_b;
-    face.m.inverse_masses = a.state->inverse_mass + b.state->inverse_mass;
+    void keep(int i, int of) {
+        time[i] = time[of], speed[i] = speed[of], separation[i] = separation[of];
+        arm_a[i] = arm_a[of], arm_b[i] = arm_b[of], start[i] = start[of];
+    }
+    // Drops what meets later than the first, and of more than a few what does not lie at the rim.
+    void keep_first() {
+        float first = time[0], fastest = 0.0f, spread = 0.0f;
+        for (int i = 0; i < count; ++i) {
+            first = minimum(first, time[i]), fastest = maximum(fastest, speed[i]);
+            spread = maximum(spread, length(arm_b[i] - arm_b[0]));
+        }
+        int kept = 0;
+        for (int i = 0; i < count; ++i)
+            if ((time[i] - first) * fastest <= flat_slope * spread) keep(kept++, i);
+        count = kept;
+    }
+    void keep_rim(Vec3 x, Vec3 y) {
+        if (count <= most_carrying) return;
+        constexpr float sides[most_carrying][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+        bool at_rim[most_met] = {};
+        for (const auto& side : sides) {
+            const Vec3 out = side[0] * x + side[1] * y;
+            int farthest = 0;
+            for (int i = 1; i < count; ++i)
+                if (dot(out, arm_b[i]) > dot(out, arm_b[farthest])) farthest = i;
+            at_rim[farthest] = true;
+        }
+        int kept = 0;
+        for (int i = 0; i < count; ++i)
+            if (at_rim[i]) keep(kept++, i);
+        count = kept;
+    }
+};
+
+bool meet_alike(const ContactRecord& r, const ContactRecord& s) {
+    constexpr float level = 1.0f - 1e-6f;
+    return ((r.flags | s.flags) & contact_balls) == 0 && r.restitution == s.restitution &&
+           r.radius_a == s.radius_a && r.radius_b == s.radius_b && r.follow == s.follow &&
+           dot(load(r.normal), load(s.normal)) >= level;
+}
+
+// Whether at least two points of a contact, and of those between the same bodies that follow it, meet at once; and the
+// point where their impact acts, as one of the contact's own. Of `fresh` ones those that have carried nothing.
+bool meet_at_once(Side& a, Side& b, const ContactRecord* records, const ImpactList& list, const ImpactContact& c,
+                  bool fresh, const SubstepConstants& k, ContactPointRecord& where) {
+    const ContactRecord& r = records[c.record];
+    if (r.point_count < 2 && c.next < 0) return false;
+    MetPoints met;
+    met.add(a, b, r, fresh, k.h);
+    if (met.count == 0) return false;
+    for (int i = c.next; i >= 0; i = list.contacts[i].next) {
+        const ImpactContact& other = list.contacts[i];
+        if (!(fresh && other.held) && meet_alike(r, records[other.record]))
+            met.add(a, b, records[other.record], fresh, k.h);
+    }
+    met.keep_first();
+    if (met.count < 2) return false;
+    Face face;
+    face.n = turns_with_face(r) ? rotate((r.follow > 0.5f ? a : b).now.dq, load(r.normal)) : load(r.normal);
     face.x = perpendicular(face.n), face.y = cross(face.n, face.x);
+    met.keep_rim(face.x, face.y);
+    float fastest = 0.0f;
+    Vec3 middle_a, middle_b;
+    const float part = 1.0f / static_cast<float>(met.count);
+    for (int i = 0; i < met.count; ++i) {
+        fastest = maximum(fastest, met.speed[i]);
+        middle_a += part * met.arm_a[i], middle_b += part * met.arm_b[i];
+    }
+    if (!(fastest >= slowest_bounce(r) * k.bounce_speed)) return false;
+    face.m.a = a.now, face.m.b = b.now;
+    face.m.a.arm = middle_a, face.m.b.arm = middle_b;
+    face.m.inverse_masses = a.state->inverse_mass + b.state->inverse_mass;
     FacePoints f;
-    f.count = count;
-    float spread = 0.0f;
-    for (int i = 0; i < count; ++i) {
-        const Vec3 off = arm_b[i] - face.m.b.arm;
-        spread = maximum(spread, length(off));
+    f.count = met.count;
+    for (int i = 0; i < f.count; ++i) {
+        const Vec3 off = met.arm_b[i] - middle_b;
         f.at[i][0] = 1.0, f.at[i][1] = dot(off, face.x), f.at[i][2] = dot(off, face.y);
     }
-    if (!((last - first) * fastest < flat_slope * spread)) return false;
     face.set_answers(f);
     // Friction tilts the body too, and where the impact acts follows from that.
     double pushed[3] = {0.0, 0.0, 0.0};
+    const ContactExtra* extra = list.extras ? list.extras + c.record : nullptr;
     for (int times = 0; times < 3; ++times) {
         if (!share_impact(f, r.restitution, pushed)) return false;
         if (!(r.dynamic_friction > 0.0f)) break;
         Vec3 off;
-        for (int i = 0; i < count; ++i) off += static_cast<float>(f.weight[i]) * (arm_b[i] - face.m.b.arm);
+        for (int i = 0; i < f.count; ++i) off += static_cast<float>(f.weight[i]) * (met.arm_b[i] - middle_b);
         face.push(r, off, extra, pushed);
     }
-    Vec3 position;
+    Vec3 position = load(r.arm_offset);
     where.separation = 0.0f;
-    for (int i = 0; i < count; ++i) {
-        const ContactPointRecord& p = r.points[places[i]];
+    for (int i = 0; i < f.count; ++i) {
         const float weight = static_cast<float>(f.weight[i]);
-        position += weight * load(p.position);
-        where.separation += weight * p.separation;
+        position += weight * met.start[i];
+        where.separation += weight * met.separation[i];
     }
     for (int d = 0; d < 3; ++d) where.position[d] = component(position, d);
     return true;

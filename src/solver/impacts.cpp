@@ -149,13 +149,16 @@ bool bounce_point(SolverBodies& bodies, Side& a, Side& b, const ContactRecord& r
 }
 
 // All points of a manifold; of `fresh` ones those that have carried nothing.
-bool bounce_points(SolverBodies& bodies, const ContactRecord& r, bool fresh, const ContactExtra* extra,
-                   const SubstepConstants& k, int sweep, WatchedContact* watched) {
+bool bounce_points(SolverBodies& bodies, const ContactRecord* records, const ImpactList& list, const ImpactContact& c,
+                   bool fresh, const SubstepConstants& k, int sweep) {
+    const ContactRecord& r = records[c.record];
+    const ContactExtra* extra = list.extras ? list.extras + c.record : nullptr;
+    WatchedContact* watched = list.watched.of(c.record);
     bool met = false;
     Side a(bodies, r.body_a), b(bodies, r.body_b);
     ContactPointRecord together;
     const int all = -1;
-    const bool flat = r.point_count > 1 && meet_at_once(a, b, r, fresh, extra, k, together);
+    const bool flat = meet_at_once(a, b, records, list, c, fresh, k, together);
     for (int j = flat ? all : 0; j < r.point_count; ++j) {
         if (j != all && fresh && r.normal_impulse[j] > 0.0f) continue;
         const ContactPointRecord& point = j == all ? together : r.points[j];
@@ -231,9 +234,7 @@ bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, const I
             // found yet who carries whom, until a blow comes to one of them.
             const bool still = struck < first_sweep;
             if (still && c.held) continue;
-            const ContactRecord& r = records[c.record];
-            const ContactExtra* extra = list.extras ? list.extras + c.record : nullptr;
-            const bool met = bounce_points(bodies, r, still, extra, k, number, list.watched.of(c.record));
+            const bool met = bounce_points(bodies, records, list, c, still, k, number);
             bounced |= met;
             if (met && list.disturbed) list.disturbed[a] = list.disturbed[b] = 1;
         }

@@ -40,6 +40,17 @@ void Solver::find_meetings(TaskPool& tasks, const SolverBodies& bodies, const Co
     });
 }
 
+void Solver::link_impacts(int bodies) {
+    if (impacts_.empty()) return;
+    last_impacts_.assign(static_cast<size_t>(bodies), -1);
+    for (int i = 0; i < impacts_.count(); ++i) {
+        const ImpactContact& c = impacts_[static_cast<size_t>(i)];
+        int32_t& last = last_impacts_[static_cast<size_t>(c.b)];
+        if (last >= 0 && impacts_[static_cast<size_t>(last)].a == c.a) impacts_[static_cast<size_t>(last)].next = i;
+        last = i;
+    }
+}
+
 void Solver::watch(const WatchList& list) {
     watched_ = list;
     if (list.count == 0) return;

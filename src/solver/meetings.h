@@ -15,6 +15,7 @@ struct ImpactContact {
     bool passes;   // nothing comes of it while both move as the step began, see contact_passes
     bool held;     // all of its points carried something when the step began: these meet nothing before a blow comes
     bool crowded;  // one of a crowd, in which blows go on by rows
+    int32_t next = -1;  // in the list: the next between the same bodies, where all that is fixed is one; or -1
 };
 
 // Those that a block is filled in with: [first, first + meeting_lanes) of a list. Impacts look after points that

@@ -120,6 +120,7 @@ size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const 
         if (!ends[i].bounces || (ends[i].crowded && !ends[i].idle && !ends[i].passes)) continue;
         impacts_.push_back({list[i], ends[i].a, ends[i].b, ends[i].passes, ends[i].held, ends[i].crowded});
     }
+    link_impacts(bodies.count);
     meetings_.resize_unset((impacts_.size() + meeting_lanes - 1) / meeting_lanes);
     passing_ = count.all - count.rows;
     return schedule_.row_bytes;

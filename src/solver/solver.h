@@ -48,6 +48,7 @@ public:
     Solver(const Memory* memory, int width)
         : schedule_(memory),
           impacts_(memory),
+          last_impacts_(memory),
           meetings_(memory),
           disturbed_(memory),
           foreseen_(memory),
@@ -126,6 +127,8 @@ private:
     void for_each_tile(TaskPool& tasks, BodyRange range, Run&& run) const;
     using Pass = SolverKernels::Pass;
     // Which of `impacts_` may meet in this substep; prepares what of it is to be asked.
+    // Tells each contact of the impacts which is the next between the same bodies.
+    void link_impacts(int bodies);
     void find_meetings(TaskPool& tasks, const SolverBodies& bodies, const ContactRecord* records,
                        const SubstepConstants& k);
     // Watched contacts: when the step begins; before the rows of a substep, who of them may meet in it; and after
@@ -143,6 +146,7 @@ private:
 
     ColourSchedule schedule_;
     Array<ImpactContact> impacts_;
+    Array<int32_t> last_impacts_;   // by body: the last of these so far that it is B of
     Array<MeetingBlock> meetings_;  // of these
     int passing_ = 0;               // how many of these pass: the last
     Array<uint8_t> disturbed_;      // by body, see ImpactList

@@ -116,6 +116,57 @@ TEST(FlatImpact, EachCornerLeavesAsFastAsItShould) {
     }
 }
 
+// What is made of several shapes, or lands on several.
+TEST(FlatImpact, OfATableIsOneImpactOfItsLegs) {
+    std::vector<ColliderDef> parts(5);
+    parts[0].shape = Box{{0.8f, 0.05f, 0.5f}};
+    for (size_t i = 1; i < 5; ++i) {
+        parts[i].shape = Box{{0.05f, 0.4f, 0.05f}};
+        parts[i].local.translation = {i % 2 ? 0.7f : -0.7f, -0.45f, i < 3 ? 0.4f : -0.4f};
+    }
+    for (ColliderDef& part : parts) part.material.restitution = 0.6f;
+    World world = WorldBuilder{}.no_gravity().sleep(false).build().value();
+    test::add_floor(world);
+    const BodyId table =
+        world.add_rigid_body({.position = {0.0f, 0.87f, 0.0f}, .velocity = {0.0f, -4.0f, 0.0f}, .colliders = parts}).value();
+    test::run(world, 4);
+    EXPECT_NEAR(world.get(table).velocity().y, 2.4f, 0.01f);
+    EXPECT_LT(length(world.get(table).angular_velocity()), 0.01f);
+}
+
+TEST(FlatImpact, OnTheSeamOfTwoTilesIsOneImpact) {
+    World world = WorldBuilder{}.no_gravity().bounciness(0.8f).sleep(false).build().value();
+    for (float x : {-2.0f, 2.0f})
+        for (float z : {-2.0f, 2.0f})
+            world.add_static_body({.shape = Box{{2.0f, 0.5f, 2.0f}}, .position = {x, -0.5f, z}}).value();
+    for (const float aside : {0.0f, 0.1f, 0.4f}) {
+        const BodyId box =
+            world.add_rigid_body({.shape = Box{}, .position = {aside, 0.55f, 0.1f}, .velocity = {0.0f, -3.0f, 0.0f}}).value();
+        test::run(world, 3);
+        EXPECT_NEAR(world.get(box).velocity().y, 2.4f, 0.01f) << aside;
+        EXPECT_LT(length(world.get(box).angular_velocity()), 0.01f) << aside;
+        world.remove_body(box).value();
+    }
+}
+
+TEST(FlatImpact, OnAnEdgeIsOneImpactOfItsTwoCorners) {
+    Thrown t;
+    t.velocity = {0.0f, -4.0f, 0.0f};
+    World world = WorldBuilder{}.no_gravity().no_friction().bounciness(0.5f).sleep(false).build().value();
+    test::add_floor(world);
+    const float tilt = 0.6f, high = 0.5f * (std::cos(tilt) + std::sin(tilt));
+    const BodyId box = world
+                           .add_rigid_body({.shape = Box{},
+                                            .position = {0.0f, high + gap, 0.0f},
+                                            .orientation = rotation_about({1.0f, 0.0f, 0.0f}, tilt),
+                                            .velocity = t.velocity})
+                           .value();
+    test::run(world, 2);
+    EXPECT_GT(std::fabs(world.get(box).angular_velocity().x), 1.0f);
+    EXPECT_NEAR(world.get(box).angular_velocity().y, 0.0f, 0.01f);
+    EXPECT_NEAR(world.get(box).angular_velocity().z, 0.0f, 0.01f);
+}
+
 // Two moving cubes, face to face: they exchange their velocities, and where they only half cover each other nothing is
 // lost either.
 TEST(FlatImpact, OfTwoCubesKeepsMomentaAndEnergy) {
