@@ -4,8 +4,8 @@
 // Greedy in the order of the list, lowest free colour first (Welsh, Powell 1967, without sorting). Constraints with a
 // static or kinematic body have colours of their own, solved last in every pass: what rests on the ground is then as
 // exact as an iteration can leave it. Constraints that find no free colour (a body with very many neighbours) overflow,
-// of either kind for themselves: what cannot be moved is never stored to. Contacts that do are solved with stand-ins for
-// the bodies that they share (stand_ins.h), joints one by one.
+// of either kind for themselves: what cannot be moved is never stored to. Contacts that do are solved with stand-ins
+// for the bodies that they share (stand_ins.h), joints one by one.
 //
 // Many bodies are cut into tiles that fit into the second-level cache with their constraints. Constraints inside a tile
 // are coloured for the tile alone, which one thread solves from end to end; those between two tiles are coloured

@@ -388,8 +388,7 @@ LENDULET_FORCE_INLINE void prepare_row(ContactRow<W, P>& c, const ContactGroup& 
     c.overdue = zero_vector<F>();
     if constexpr (P > 1) c.turn.shift[0] = c.turn.shift[1] = zero;
     prepare_start<W, P>(c, bodies, body_a, body_b);
-    WideVelocity<F> A = load_velocity_at<W>(bodies.state, c.a),
-                    B = load_velocity_at<W>(bodies.state, c.b);
+    WideVelocity<F> A = load_velocity_at<W>(bodies.state, c.a), B = load_velocity_at<W>(bodies.state, c.b);
     SymMat3T<F> IA = load_inverse_inertia_at<W>(bodies.inertia, c.a);
     SymMat3T<F> IB = load_inverse_inertia_at<W>(bodies.inertia, c.b);
     F inverse_masses = A.inverse_mass + B.inverse_mass;

@@ -3,8 +3,8 @@
 // Taken one after the other the first corner alone would turn the body round. Newton's law for all of them at once
 // (Moreau 1988) is that each leaves e times as fast as it came, or faster if it carries nothing: a linear
 // complementarity problem with a rank of at most three, since in the plane of the points their velocities along the
-// normal are (1 u v) g and the answers to impulses there (1 u v) K (1 u v)^T. What carries acts at one point among them,
-// and an impact at that point alone is theirs.
+// normal are (1 u v) g and the answers to impulses there (1 u v) K (1 u v)^T. What carries acts at one point among
+// them, and an impact at that point alone is theirs.
 
 // Points that meet at once do so within the time in which the fastest goes this part of their distance: bodies that
 // give way by as much in an impact do not tell.
@@ -17,26 +17,22 @@ struct FacePoints {
     double at[most_carrying][3];  // 1, u, v
     double weight[most_carrying];
     double K[3][3];
-    double approach[3];  // g, before the impact, m/s
+    double approach[3];                            // g, before the impact, m/s
+    double answers[most_carrying][most_carrying];  // of the velocity at one to an impulse at another
 };
 
 double in_plane(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-double answer(const FacePoints& f, int i, int j) {
-    const double along[3] = {in_plane(f.K[0], f.at[j]), in_plane(f.K[1], f.at[j]), in_plane(f.K[2], f.at[j])};
-    return in_plane(f.at[i], along);
-}
 
 // Whether `n` points, at most three, can carry what all want of velocity: their loads.
 bool try_carrying(const FacePoints& f, const int points[3], int n, const double wanted[most_carrying], double most,
                   double load[3]) {
     double m[3][4];
     for (int i = 0; i < n; ++i) {
-        for (int j = 0; j < n; ++j) m[i][j] = answer(f, points[i], points[j]);
+        for (int j = 0; j < n; ++j) m[i][j] = f.answers[points[i]][points[j]];
         m[i][3] = wanted[points[i]];
     }
     for (int i = 0; i < n; ++i) {  // symmetric and positive: no pivots are sought
-        if (!(m[i][i] > 1e-9 * answer(f, points[i], points[i]))) return false;
+        if (!(m[i][i] > 1e-9 * f.answers[points[i]][points[i]])) return false;
         for (int j = 0; j < n; ++j) {
             const double part = m[j][i] / m[i][i];
             for (int c = i; j != i && c < 4; ++c) m[j][c] -= part * m[i][c];
@@ -46,7 +42,7 @@ bool try_carrying(const FacePoints& f, const int points[3], int n, const double 
         if (!((load[i] = m[i][3] / m[i][i]) >= 0.0)) return false;
     for (int i = 0; i < f.count; ++i) {
         double got = 0.0;
-        for (int j = 0; j < n; ++j) got += answer(f, i, points[j]) * load[j];
+        for (int j = 0; j < n; ++j) got += f.answers[i][points[j]] * load[j];
         if (!(got >= wanted[i] - 1e-4 * most)) return false;
     }
     return true;
@@ -56,7 +52,8 @@ bool try_carrying(const FacePoints& f, const int points[3], int n, const double 
 bool share_impact(FacePoints& f, float restitution, const double pushed[3]) {
     double wanted[most_carrying], most = 0.0, load[3];
     for (int i = 0; i < f.count; ++i) {
-        wanted[i] = -(1.0 + static_cast<double>(restitution)) * in_plane(f.at[i], f.approach) - in_plane(f.at[i], pushed);
+        wanted[i] =
+            -(1.0 + static_cast<double>(restitution)) * in_plane(f.at[i], f.approach) - in_plane(f.at[i], pushed);
         most = wanted[i] > most ? wanted[i] : most;
         f.weight[i] = 0.0;
     }
@@ -93,6 +90,11 @@ struct Face {
         f.K[0][0] = m.response(n, n);
         f.K[0][1] = f.K[1][0] = -dot(q, y), f.K[0][2] = f.K[2][0] = dot(q, x);
         f.K[1][1] = dot(y, Sy), f.K[1][2] = f.K[2][1] = -dot(x, Sy), f.K[2][2] = dot(x, Sx);
+        for (int j = 0; j < f.count; ++j) {
+            const double* at = f.at[j];
+            const double along[3] = {in_plane(f.K[0], at), in_plane(f.K[1], at), in_plane(f.K[2], at)};
+            for (int i = 0; i < f.count; ++i) f.answers[i][j] = in_plane(f.at[i], along);
+        }
         set_motion(f.approach, m.slip(), m.b.w - m.a.w);
     }
     void set_motion(double g[3], Vec3 slip, Vec3 spin) const {
@@ -134,21 +136,28 @@ struct MetPoints {
         time[i] = time[of], speed[i] = speed[of], separation[i] = separation[of];
         arm_a[i] = arm_a[of], arm_b[i] = arm_b[of], start[i] = start[of];
     }
+    float fastest() const {
+        float most = 0.0f;
+        for (int i = 0; i < count; ++i) most = maximum(most, speed[i]);
+        return most;
+    }
     // Drops what meets later than the first, and of more than a few what does not lie at the rim.
     void keep_first() {
-        float first = time[0], fastest = 0.0f, spread = 0.0f;
+        float first = time[0], spread = 0.0f;
         for (int i = 0; i < count; ++i) {
-            first = minimum(first, time[i]), fastest = maximum(fastest, speed[i]);
+            first = minimum(first, time[i]);
             spread = maximum(spread, length(arm_b[i] - arm_b[0]));
         }
+        const float most = flat_slope * spread / fastest();
         int kept = 0;
         for (int i = 0; i < count; ++i)
-            if ((time[i] - first) * fastest <= flat_slope * spread) keep(kept++, i);
+            if (time[i] - first <= most) keep(kept++, i);
         count = kept;
     }
     void keep_rim(Vec3 x, Vec3 y) {
         if (count <= most_carrying) return;
-        constexpr float sides[most_carrying][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+        constexpr float sides[most_carrying][2] = {{1, 0}, {0, 1},  {-1, 0},  {0, -1},
+                                                   {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
         bool at_rim[most_met] = {};
         for (const auto& side : sides) {
             const Vec3 out = side[0] * x + side[1] * y;
@@ -166,39 +175,36 @@ struct MetPoints {
 
 bool meet_alike(const ContactRecord& r, const ContactRecord& s) {
     constexpr float level = 1.0f - 1e-6f;
-    return ((r.flags | s.flags) & contact_balls) == 0 && r.restitution == s.restitution &&
-           r.radius_a == s.radius_a && r.radius_b == s.radius_b && r.follow == s.follow &&
-           dot(load(r.normal), load(s.normal)) >= level;
+    return ((r.flags | s.flags) & contact_balls) == 0 && r.restitution == s.restitution && r.radius_a == s.radius_a &&
+           r.radius_b == s.radius_b && r.follow == s.follow && dot(load(r.normal), load(s.normal)) >= level;
 }
 
-// Whether at least two points of a contact, and of those between the same bodies that follow it, meet at once; and the
-// point where their impact acts, as one of the contact's own. Of `fresh` ones those that have carried nothing.
-bool meet_at_once(Side& a, Side& b, const ContactRecord* records, const ImpactList& list, const ImpactContact& c,
-                  bool fresh, const SubstepConstants& k, ContactPointRecord& where) {
+enum class Meet { none, one_by_one, at_once };
+
+// How the points of a contact meet, with those of contacts between the same bodies that follow it; where at least two
+// do at once, the point where their impact acts, as one of the contact's own. Of `fresh` ones those that have carried
+// nothing.
+Meet how_they_meet(Side& a, Side& b, const ContactRecord* records, const ImpactList& list, const ImpactContact& c,
+                   bool fresh, const SubstepConstants& k, ContactPointRecord& where) {
     const ContactRecord& r = records[c.record];
-    if (r.point_count < 2 && c.next < 0) return false;
+    if (r.point_count < 2 && c.next < 0) return Meet::one_by_one;
     MetPoints met;
     met.add(a, b, r, fresh, k.h);
-    if (met.count == 0) return false;
+    if (!(met.fastest() >= slowest_bounce(r) * k.bounce_speed)) return Meet::none;
     for (int i = c.next; i >= 0; i = list.contacts[i].next) {
         const ImpactContact& other = list.contacts[i];
         if (!(fresh && other.held) && meet_alike(r, records[other.record]))
             met.add(a, b, records[other.record], fresh, k.h);
     }
     met.keep_first();
-    if (met.count < 2) return false;
+    if (met.count < 2) return Meet::one_by_one;
     Face face;
     face.n = turns_with_face(r) ? rotate((r.follow > 0.5f ? a : b).now.dq, load(r.normal)) : load(r.normal);
     face.x = perpendicular(face.n), face.y = cross(face.n, face.x);
     met.keep_rim(face.x, face.y);
-    float fastest = 0.0f;
     Vec3 middle_a, middle_b;
     const float part = 1.0f / static_cast<float>(met.count);
-    for (int i = 0; i < met.count; ++i) {
-        fastest = maximum(fastest, met.speed[i]);
-        middle_a += part * met.arm_a[i], middle_b += part * met.arm_b[i];
-    }
-    if (!(fastest >= slowest_bounce(r) * k.bounce_speed)) return false;
+    for (int i = 0; i < met.count; ++i) middle_a += part * met.arm_a[i], middle_b += part * met.arm_b[i];
     face.m.a = a.now, face.m.b = b.now;
     face.m.a.arm = middle_a, face.m.b.arm = middle_b;
     face.m.inverse_masses = a.state->inverse_mass + b.state->inverse_mass;
@@ -212,12 +218,19 @@ bool meet_at_once(Side& a, Side& b, const ContactRecord* records, const ImpactLi
     // Friction tilts the body too, and where the impact acts follows from that.
     double pushed[3] = {0.0, 0.0, 0.0};
     const ContactExtra* extra = list.extras ? list.extras + c.record : nullptr;
+    const auto fastest = static_cast<double>(met.fastest());
     for (int times = 0; times < 3; ++times) {
-        if (!share_impact(f, r.restitution, pushed)) return false;
-        if (!(r.dynamic_friction > 0.0f)) break;
+        if (!share_impact(f, r.restitution, pushed)) return Meet::one_by_one;
+        if (!(r.dynamic_friction > 0.0f) || times == 2) break;
         Vec3 off;
         for (int i = 0; i < f.count; ++i) off += static_cast<float>(f.weight[i]) * (met.arm_b[i] - middle_b);
         face.push(r, off, extra, pushed);
+        double most = 0.0;  // at any of the points
+        for (int i = 0; i < f.count; ++i) {
+            const double there = in_plane(f.at[i], pushed);
+            most = there * there > most ? there * there : most;
+        }
+        if (!(most > 1e-8 * fastest * fastest)) break;
     }
     Vec3 position = load(r.arm_offset);
     where.separation = 0.0f;
@@ -227,5 +240,5 @@ bool meet_at_once(Side& a, Side& b, const ContactRecord* records, const ImpactLi
         where.separation += weight * met.separation[i];
     }
     for (int d = 0; d < 3; ++d) where.position[d] = component(position, d);
-    return true;
+    return Meet::at_once;
 }

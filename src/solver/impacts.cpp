@@ -157,11 +157,12 @@ bool bounce_points(SolverBodies& bodies, const ContactRecord* records, const Imp
     bool met = false;
     Side a(bodies, r.body_a), b(bodies, r.body_b);
     ContactPointRecord together;
-    const int all = -1;
-    const bool flat = meet_at_once(a, b, records, list, c, fresh, k, together);
-    for (int j = flat ? all : 0; j < r.point_count; ++j) {
-        if (j != all && fresh && r.normal_impulse[j] > 0.0f) continue;
-        const ContactPointRecord& point = j == all ? together : r.points[j];
+    const Meet how = how_they_meet(a, b, records, list, c, fresh, k, together);
+    if (how == Meet::none) return false;
+    const bool at_once = how == Meet::at_once;
+    for (int j = 0; j < (at_once ? 1 : r.point_count); ++j) {
+        if (!at_once && fresh && r.normal_impulse[j] > 0.0f) continue;
+        const ContactPointRecord& point = at_once ? together : r.points[j];
         if (!bounce_point(bodies, a, b, r, point, extra, k, sweep, watched)) continue;
         met = true;
         a = Side(bodies, r.body_a), b = Side(bodies, r.body_b);

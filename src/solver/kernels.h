@@ -30,8 +30,8 @@ struct SubstepConstants {
 
 struct SharedEnds;  // stand_ins.h
 
-// Contacts that are solved at once where they share bodies, whatever the width: results depend on it. And which stand-in
-// such a contact has for A (0) or B (1), by its place in the group.
+// Contacts that are solved at once where they share bodies, whatever the width: results depend on it. And which
+// stand-in such a contact has for A (0) or B (1), by its place in the group.
 inline constexpr int shared_contacts = 16;
 constexpr int32_t stand_in(int place, int end) { return 2 * (place % shared_contacts) + end; }
 
@@ -58,7 +58,7 @@ struct ContactGroup {
     float impulse_unit;    // a record's impulses are multiplied by it on their way into rows: a power of two
     std::byte* rolling;    // rows against rolling, or null
     ContactExtra* extras;  // by record, where `rolling` is not null
-    SharedEnds* ends;       // by place, where it `shares`
+    SharedEnds* ends;      // by place, where it `shares`
 };
 
 struct SolverKernels {

@@ -41,8 +41,8 @@ void prepare_rolling(const ContactGroup& g, const BodyArrays& bodies, int begin,
         }
         c.start_slip = c.start_slip + r.running;
         r.start_spin = load_start<W>(bodies.start, b).w - load_start<W>(bodies.start, a).w;
-        SymMat3T<F> K = load_inverse_inertia_at<W>(bodies.inertia, c.a) +
-                        load_inverse_inertia_at<W>(bodies.inertia, c.b);
+        SymMat3T<F> K =
+            load_inverse_inertia_at<W>(bodies.inertia, c.a) + load_inverse_inertia_at<W>(bodies.inertia, c.b);
         Vec3T<F> t2 = cross(c.n, c.t1), k1 = K * c.t1;
         F k11 = dot(c.t1, k1), k12 = dot(t2, k1), k22 = dot(t2, K * t2);
         F d = inverse_or_zero(k11 * k22 - k12 * k12);

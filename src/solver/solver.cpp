@@ -1,7 +1,7 @@
 #include "solver/solver.h"
 
-#include "solver/stand_ins.h"
 #include "solver/impacts.h"
+#include "solver/stand_ins.h"
 
 namespace lendulet {
 namespace {
@@ -106,8 +106,8 @@ void Solver::pass_tile(int tile, SolverBodies& bodies, const SubstepConstants& k
 }
 
 void Solver::pass_between(TaskPool& tasks, SolverBodies& bodies, const SubstepConstants& k, Pass pass) const {
-    for_each_between(
-        tasks, [&](const ContactGroup& g, int begin, int end) { pass_group(g, begin, end, bodies, k, pass); });
+    for_each_between(tasks,
+                     [&](const ContactGroup& g, int begin, int end) { pass_group(g, begin, end, bodies, k, pass); });
 }
 
 size_t Solver::schedule(ColourSorter& sorter, const SolverBodies& bodies, const ContactEnds* ends, const uint32_t* list,
@@ -218,8 +218,7 @@ void Solver::coast(TaskPool& tasks, const SolverSettings& settings, SolverBodies
 
 void Solver::store(TaskPool& tasks, const SolverBodies& bodies, ContactRecord* records) {
     const TaskPool::Alone alone(tasks, is_small(bodies.count));
-    for_each_group(
-        tasks, [&](const ContactGroup& g, int begin, int end) { kernels_.store(g, records, begin, end); });
+    for_each_group(tasks, [&](const ContactGroup& g, int begin, int end) { kernels_.store(g, records, begin, end); });
     const int first = impacts_.count() - passing_;
     tasks.for_each(passing_, contacts_per_part, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i)

@@ -12,7 +12,8 @@ struct StandIns {
     BodyStart start[2 * shared_contacts];
 
     StandIns(const ContactGroup& group, int first, const SolverBodies& bodies)
-        : ends(group.ends + first), count(group.count - first < shared_contacts ? group.count - first : shared_contacts) {
+        : ends(group.ends + first),
+          count(group.count - first < shared_contacts ? group.count - first : shared_contacts) {
         for (int i = 0; i < 2 * shared_contacts; ++i) {
             const bool there = i / 2 < count;
             const SharedEnds& e = ends[there ? i / 2 : 0];
@@ -69,7 +70,7 @@ void find_sharers(SharedEnds* ends, int count) {
 }  // namespace
 
 void prepare_shared(const SolverKernels& kernels, const ContactGroup& group, const ContactRecord* records,
-                   SolverBodies& bodies) {
+                    SolverBodies& bodies) {
     for (int i = 0; i < group.count; ++i) {
         const ContactRecord& r = records[group.order[i]];
         group.ends[i] = {{r.body_a, r.body_b}, {1.0f, 1.0f}};
@@ -82,8 +83,8 @@ void prepare_shared(const SolverKernels& kernels, const ContactGroup& group, con
     });
 }
 
-void pass_shared(const SolverKernels& kernels, SolverKernels::Pass pass, const ContactGroup& group, SolverBodies& bodies,
-                const SubstepConstants& k) {
+void pass_shared(const SolverKernels& kernels, SolverKernels::Pass pass, const ContactGroup& group,
+                 SolverBodies& bodies, const SubstepConstants& k) {
     for_each_sixteen(group, kernels.width, [&](int first, int begin, int end) {
         StandIns these(group, first, bodies);
         pass(group, these.arrays(), k, begin, end);

@@ -23,8 +23,8 @@ struct SharedEnds {
 
 // Fills in the group's ends, and packs its rows.
 void prepare_shared(const SolverKernels& kernels, const ContactGroup& group, const ContactRecord* records,
-                   SolverBodies& bodies);
-void pass_shared(const SolverKernels& kernels, SolverKernels::Pass pass, const ContactGroup& group, SolverBodies& bodies,
-                const SubstepConstants& k);
+                    SolverBodies& bodies);
+void pass_shared(const SolverKernels& kernels, SolverKernels::Pass pass, const ContactGroup& group,
+                 SolverBodies& bodies, const SubstepConstants& k);
 
 }  // namespace lendulet

@@ -128,7 +128,8 @@ TEST(FlatImpact, OfATableIsOneImpactOfItsLegs) {
     World world = WorldBuilder{}.no_gravity().sleep(false).build().value();
     test::add_floor(world);
     const BodyId table =
-        world.add_rigid_body({.position = {0.0f, 0.87f, 0.0f}, .velocity = {0.0f, -4.0f, 0.0f}, .colliders = parts}).value();
+        world.add_rigid_body({.position = {0.0f, 0.87f, 0.0f}, .velocity = {0.0f, -4.0f, 0.0f}, .colliders = parts})
+            .value();
     test::run(world, 4);
     EXPECT_NEAR(world.get(table).velocity().y, 2.4f, 0.01f);
     EXPECT_LT(length(world.get(table).angular_velocity()), 0.01f);
@@ -141,7 +142,8 @@ TEST(FlatImpact, OnTheSeamOfTwoTilesIsOneImpact) {
             world.add_static_body({.shape = Box{{2.0f, 0.5f, 2.0f}}, .position = {x, -0.5f, z}}).value();
     for (const float aside : {0.0f, 0.1f, 0.4f}) {
         const BodyId box =
-            world.add_rigid_body({.shape = Box{}, .position = {aside, 0.55f, 0.1f}, .velocity = {0.0f, -3.0f, 0.0f}}).value();
+            world.add_rigid_body({.shape = Box{}, .position = {aside, 0.55f, 0.1f}, .velocity = {0.0f, -3.0f, 0.0f}})
+                .value();
         test::run(world, 3);
         EXPECT_NEAR(world.get(box).velocity().y, 2.4f, 0.01f) << aside;
         EXPECT_LT(length(world.get(box).angular_velocity()), 0.01f) << aside;
