@@ -169,8 +169,8 @@ TEST(Alter, SleepAndBullets) {
             .value();
         const BodyId shot = world
                                 .add_rigid_body({.shape = Box{{0.02f, 0.05f, 0.03f}},
-                                                 .velocity = {800.0f, 0.0f, 0.0f},
-                                                 .angular_velocity = {40.0f, 90.0f, 70.0f}})
+                                                 .velocity = {1500.0f, 0.0f, 0.0f},
+                                                 .angular_velocity = {200.0f, 450.0f, 350.0f}})
                                 .value();
         world.get(shot).set_bullet(bullet);
         EXPECT_EQ(world.get(shot).bullet(), bullet);
