@@ -72,7 +72,7 @@ void between_groups(const Tree& tree, typename Tree::Ref group, const WideBox& b
 void pairs_of_leaves(const ScannedBoxes& moving, const ScannedBoxes& fixed, Array<BoxPair>& out) {
     PairList list(out, true);
     PairRoom room(list);
-    all_pairs_scan()(moving, fixed, 0, moving.count, room);
+    all_pairs_kernels().scan(moving, fixed, 0, moving.count, room);
 }
 
 }  // namespace
