@@ -52,7 +52,7 @@ private:
 
 std::vector<SubjectType> list_subjects() {
     std::vector<SubjectType> types;
-    for (int i = 0; i < static_cast<int>(std::variant_size_v<BroadPhaseStructure>); ++i) {
+    for (int i = 0; i < broad_phase_types; ++i) {
         BroadPhaseType type = static_cast<BroadPhaseType>(i);
         types.push_back({std::string(name_of(type)), true, [type] { return std::make_unique<Ours>(type); }});
     }

@@ -72,4 +72,20 @@ void assertion_failed(const char* expression, const char* file, int line) {
 }  // namespace detail
 #endif
 
+namespace {
+
+constexpr Memory heap{};
+
+}  // namespace
+
+void* Memory::grow(const Memory* memory, void* old, size_t element, size_t size, size_t& capacity, size_t wanted) {
+    constexpr size_t least = 16;
+    const size_t before = capacity, half_more = before + before / 2;
+    capacity = wanted > half_more ? wanted : half_more;
+    if (capacity < least) capacity = least;
+    return (memory ? *memory : heap).enlarge(old, before * element, size * element, capacity * element);
+}
+
+void Memory::release(const Memory* memory, void* old, size_t bytes) { (memory ? *memory : heap).free(old, bytes); }
+
 }  // namespace lendulet

@@ -24,6 +24,10 @@ struct Memory {
     // written to: an array that grows in the middle of a step does not make that step a slow one.
     void* enlarge(void* old, size_t old_bytes, size_t used, size_t bytes) const;
     void free(void* memory, size_t bytes) const;
+    // For arrays, whose memory may be null, the heap; out of line, since every loop that appends has them.
+    // More room for `size` elements of so many bytes, at least for `wanted` of them, and the capacity that it then has.
+    static void* grow(const Memory* memory, void* old, size_t element, size_t size, size_t& capacity, size_t wanted);
+    static void release(const Memory* memory, void* old, size_t bytes);
     static constexpr size_t alignment = 64;  // a cache line, and the widest vector
 };
 
@@ -72,7 +76,8 @@ public:
 
     void clear() { size_ = 0; }
     void reserve(size_t n) {
-        if (n > capacity_) grow(n);
+        if (n > capacity_) [[unlikely]]
+            grow(n);
     }
     // Reserves, and writes to what of it is not in use: the system hands out memory page by page where it is touched
     // first, which may take longer than all that is done with it.
@@ -97,7 +102,8 @@ public:
     }
     T& push_back(const T& value) {
         T copy = value;  // may lie in this array
-        if (size_ == capacity_) grow(size_ + 1);
+        if (size_ == capacity_) [[unlikely]]
+            grow(size_ + 1);
         data_[size_] = copy;
         return data_[size_++];
     }
@@ -119,17 +125,9 @@ public:
     size_t bytes() const { return capacity_ * sizeof(T); }
 
 private:
-    static constexpr Memory heap{};
-    const Memory& memory() const { return memory_ ? *memory_ : heap; }
-    void grow(size_t n) {
-        size_t wanted = capacity_ + capacity_ / 2;
-        if (wanted < n) wanted = n;
-        if (wanted < 16) wanted = 16;
-        data_ = static_cast<T*>(memory().enlarge(data_, capacity_ * sizeof(T), size_ * sizeof(T), wanted * sizeof(T)));
-        capacity_ = wanted;
-    }
+    void grow(size_t n) { data_ = static_cast<T*>(Memory::grow(memory_, data_, sizeof(T), size_, capacity_, n)); }
     void release() {
-        if (data_) memory().free(data_, capacity_ * sizeof(T));
+        if (data_) Memory::release(memory_, data_, capacity_ * sizeof(T));
         data_ = nullptr;
     }
 

@@ -23,11 +23,15 @@ void AllPairs::set_moving(const BroadBox* boxes, int count, TaskPool*) {
 
 void AllPairs::find_pairs(TaskPool& tasks, Array<BoxPair>& out) {
     constexpr int grain = 8;  // blocks
-    const AllPairsScan scan = all_pairs_scan();
-    chunks_.search(tasks, moving_.blocks.count(), grain, out, [&](int begin, int end, PairList& list) {
+    const ScannedBoxes moving = scanned(moving_), fixed = scanned(fixed_);
+    auto scan = [&](int begin, int end, PairList& list) {
         PairRoom room(list);
-        scan(scanned(moving_), scanned(fixed_), begin * block_size, std::min(end * block_size, moving_.count()), room);
-    });
+        moving_.kernels->scan(moving, fixed, begin * block_size, std::min(end * block_size, moving.count), room);
+    };
+    const int blocks = moving_.blocks.count();
+    if (blocks > grain) return chunks_.search(tasks, blocks, grain, out, scan);
+    PairList list(out, true);  // as a search of so few would, in half the instructions
+    scan(0, blocks, list);
 }
 
 void AllPairs::update(TaskPool& tasks, const BroadBox* boxes, int count, const uint32_t* changed, int changed_count,

@@ -1,4 +1,4 @@
-// The loop of AllPairs and of small trees, compiled once per instruction set. Every width writes the same pairs in the
+// The loops of AllPairs and of small trees, compiled once per instruction set. Every one writes the same pairs in the
 // same order.
 #pragma once
 
@@ -15,12 +15,16 @@ struct ScannedBoxes {
     int index_step = block_size;  // from the indices of one block to those of the next
 };
 
-// Pairs of the boxes [begin, end) of `moving` with those before each and with all of `fixed`. Whole blocks: `begin` is
-// a multiple of their size, `end` too or the count.
-using AllPairsScan = void (*)(const ScannedBoxes& moving, const ScannedBoxes& fixed, int begin, int end,
-                              PairStream& out);
+struct AllPairsKernels {
+    // Boxes as they are given into blocks, and their indices; lanes behind the last box are emptied. There is room for
+    // the indices of whole blocks.
+    void (*fill)(const BroadBox* boxes, int count, BoxBlock* blocks, uint32_t* index);
+    // Pairs of the boxes [begin, end) of `moving` with those before each and with all of `fixed`. Whole blocks: `begin`
+    // is a multiple of their size, `end` too or the count.
+    void (*scan)(const ScannedBoxes& moving, const ScannedBoxes& fixed, int begin, int end, PairStream& out);
+};
 
-// Of the widest vectors of this machine that a block fills.
-AllPairsScan all_pairs_scan();
+// Those of this machine's widest instructions.
+const AllPairsKernels& all_pairs_kernels();
 
 }  // namespace lendulet

@@ -1,10 +1,33 @@
-// The one source of the loop of AllPairs; see all_pairs_scan.h. Included by a unit for each instruction set, which
+// The one source of the loops of AllPairs; see all_pairs_scan.h. Included by a unit for each instruction set, which
 // defines LENDULET_KERNEL_SPACE.
 #include "broad_phase/all_pairs_scan.h"
+#include "broad_phase/block_fill.h"
+#include "math/wide/gather.h"
 #include "math/wide/mask.h"
 
 namespace lendulet::LENDULET_KERNEL_SPACE {
 namespace {
+
+// A block is written as wide as it is read: what is written in parts has to reach the cache before it can be read
+// whole.
+template <class F>
+void fill_blocks(const BroadBox* boxes, int count, BoxBlock* blocks, uint32_t* index) {
+    constexpr int width = lanes_of<F>;
+    for (int left = count; left > 0; left -= block_size, boxes += block_size, index += block_size, ++blocks) {
+        for (int first = 0; first < block_size; first += width) {
+            const BroadBox* box[width];
+            for (int i = 0; i < width; ++i) box[i] = first + i < left ? boxes + first + i : &empty_box;
+            F low[4], high[4];
+            transpose_quads<width>([&](int i) { return load_wide<Float4>(box[i]->lower); }, low);
+            transpose_quads<width>([&](int i) { return load_wide<Float4>(box[i]->upper); }, high);
+            for (int d = 0; d < 3; ++d) {
+                store_wide(blocks->lower[d] + first, low[d]);
+                store_wide(blocks->upper[d] + first, high[d]);
+            }
+            std::memcpy(index + first, &low[3], sizeof low[3]);  // the word behind `lower` is the index
+        }
+    }
+}
 
 // A box with each coordinate in all lanes.
 template <class F>
@@ -25,7 +48,7 @@ LENDULET_FORCE_INLINE uint32_t overlapping(const BoxBlock& block, int first, con
 
 // Pairs of a box with the first `lanes` of a set.
 template <class F>
-LENDULET_FORCE_INLINE void pairs_with(const ScannedBoxes& set, int lanes, const Spread<F>& box, uint32_t own,
+LENDULET_FORCE_INLINE void pairs_with(ScannedBoxes set, int lanes, const Spread<F>& box, uint32_t own,
                                       PairStream& out) {
     const BoxBlock* block = set.blocks;
     const uint32_t* index = set.index;
@@ -90,24 +113,43 @@ LENDULET_FORCE_INLINE uint32_t overlapping_turned(const Eight<F> lower[3], const
     return bits;
 }
 
-// Pairs of the first `lanes` boxes of a block among themselves: all of them against all turned by one, two, three and
-// four lanes, which is four tests in place of seven.
+// Bit i + 8 k - 8: box i of the block overlaps box i + k, round the end, of k to 4; those of 4 once.
 template <class F>
-LENDULET_FORCE_INLINE void pairs_within(const BoxBlock& block, const uint32_t* index, int lanes, PairStream& out) {
+LENDULET_FORCE_INLINE uint32_t overlapping_within(const BoxBlock& block) {
     Eight<F> lower[3], upper[3];
     for (int d = 0; d < 3; ++d) {
         lower[d] = load_eight<F>(block.lower[d]);
         upper[d] = load_eight<F>(block.upper[d]);
     }
-    uint32_t hits = overlapping_turned<1>(lower, upper) | overlapping_turned<2>(lower, upper) << 8 |
-                    overlapping_turned<3>(lower, upper) << 16 | (overlapping_turned<4>(lower, upper) & 0xf) << 24;
+    return overlapping_turned<1>(lower, upper) | overlapping_turned<2>(lower, upper) << 8 |
+           overlapping_turned<3>(lower, upper) << 16 | (overlapping_turned<4>(lower, upper) & 0xf) << 24;
+}
+
+// The bits of overlapping_within whose boxes are both among the first `lanes`.
+struct BitsWithin {
+    uint32_t of[block_size + 1];
+    constexpr BitsWithin() : of{} {
+        for (int lanes = 0; lanes <= block_size; ++lanes) {
+            for (int bit = 0; bit < 28; ++bit) {
+                const int i = bit % block_size, j = (i + 1 + bit / block_size) % block_size;
+                if (i < lanes && j < lanes) of[lanes] |= 1u << bit;
+            }
+        }
+    }
+};
+inline constexpr BitsWithin bits_within;
+
+// Pairs of the first `lanes` boxes of a block among themselves: all of them against all turned by one, two, three and
+// four lanes, which is four tests in place of seven.
+template <class F>
+LENDULET_FORCE_INLINE void pairs_within(const BoxBlock& block, const uint32_t* index, int lanes, PairStream& out) {
+    uint32_t hits = overlapping_within<F>(block) & bits_within.of[lanes];
     if (hits == 0) return;
     constexpr int most = block_size * (block_size - 1) / 2;
     if (out.end - out.next < most) out.full(out);
     BoxPair* next = out.next;
     do {
         const int bit = take_bit(hits), i = bit % block_size, j = (i + 1 + bit / block_size) % block_size;
-        if (i >= lanes || j >= lanes) continue;
         const uint32_t a = index[i], b = index[j];
         *next++ = a < b ? BoxPair{a, b} : BoxPair{b, a};
     } while (hits);
@@ -116,7 +158,9 @@ LENDULET_FORCE_INLINE void pairs_within(const BoxBlock& block, const uint32_t* i
 
 // Block by block: its boxes with each other, then with all of the blocks before it and of the other set.
 template <class F>
-void scan_all_pairs(const ScannedBoxes& moving, const ScannedBoxes& fixed, int begin, int end, PairStream& out) {
+void scan_all_pairs(const ScannedBoxes& moving_boxes, const ScannedBoxes& fixed_boxes, int begin, int end,
+                    PairStream& out) {
+    const ScannedBoxes moving = moving_boxes, fixed = fixed_boxes;  // not to be read anew after each pair
     constexpr int few = 4;  // boxes of a block: then those before each are tested one by one
     for (int first = begin; first < end; first += block_size) {
         const int b = static_cast<int>(static_cast<unsigned>(first) / block_size);
@@ -136,6 +180,11 @@ void scan_all_pairs(const ScannedBoxes& moving, const ScannedBoxes& fixed, int b
             pairs_with(fixed, fixed.count, box, index[i], out);
         }
     }
+}
+
+template <class F>
+constexpr AllPairsKernels make_all_pairs_kernels() {
+    return {fill_blocks<F>, scan_all_pairs<F>};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/memory.h"
+#include "broad_phase/all_pairs_scan.h"
 #include "broad_phase/query.h"
 
 namespace lendulet {
@@ -11,7 +12,9 @@ struct BoxSet {
     Array<BoxBlock> blocks;
     Array<uint32_t> index;
 
-    explicit BoxSet(const Memory* memory) : blocks(memory), index(memory) {}
+    const AllPairsKernels* kernels;
+
+    explicit BoxSet(const Memory* memory) : blocks(memory), index(memory), kernels(&all_pairs_kernels()) {}
     void assign(const BroadBox* boxes, int count);
     int count() const { return index.count(); }
     BroadBox box(int place) const { return box_in(blocks[place / block_size], place % block_size, index[place]); }

@@ -8,13 +8,29 @@ namespace lendulet {
 
 namespace {
 
-// The structure whose place in the variant is that of `type` among the enumerators.
-template <size_t place = 0>
 BroadPhaseStructure make_structure(BroadPhaseType type, const Memory* memory) {
-    if constexpr (place + 1 < std::variant_size_v<BroadPhaseStructure>) {
-        if (static_cast<size_t>(type) > place) return make_structure<place + 1>(type, memory);
+    auto rtree = [&](RtreePolicy policy) {
+        return BroadPhaseStructure(std::in_place_type<TwoTrees<RTree>>, memory, policy);
+    };
+    switch (type) {
+        case BroadPhaseType::all_pairs:
+            return BroadPhaseStructure(std::in_place_type<AllPairs>, memory);
+        case BroadPhaseType::sweep_1:
+            return BroadPhaseStructure(std::in_place_type<Sweep1>, memory);
+        case BroadPhaseType::sweep_3:
+            return BroadPhaseStructure(std::in_place_type<Sweep3>, memory);
+        case BroadPhaseType::rtree_quadratic:
+            return rtree(RtreePolicy::quadratic);
+        case BroadPhaseType::rtree_star:
+            return rtree(RtreePolicy::star);
+        case BroadPhaseType::rtree_str:
+            return rtree(RtreePolicy::str);
+        case BroadPhaseType::rtree_omt:
+            return BroadPhaseStructure(std::in_place_type<RtreeOmt>, memory);
+        case BroadPhaseType::wide_tree:
+            break;
     }
-    return BroadPhaseStructure(std::in_place_index<place>, memory);
+    return BroadPhaseStructure(std::in_place_type<WideTree>, memory);
 }
 
 constexpr int queries_per_task = 32;
@@ -54,8 +70,8 @@ void BroadPhase::update(TaskPool& tasks, const BroadBox* boxes, int count, const
 // Queries
 
 void BroadPhase::query_box(const float lower[3], const float upper[3], Array<uint32_t>& out) const {
-    auto append = [&](uint32_t index) { out.push_back(index); };
-    std::visit([&](const auto& s) { s.visit_overlapping(lower, upper, append); }, structure_);
+    const Meetings meetings(out);
+    std::visit([&](const auto& s) { s.visit_overlapping(lower, upper, meetings); }, structure_);
 }
 
 uint32_t BroadPhase::ray(const float origin[3], const float translation[3], float max_t, float& t) const {
@@ -86,9 +102,8 @@ void BroadPhase::query_boxes(TaskPool& tasks, const BoxQuery* queries, int count
                 if constexpr (requires { s.find_hits(queries, begin, end, list); })
                     return s.find_hits(queries, begin, end, list);
                 for (int i = begin; i < end; ++i) {
-                    s.visit_overlapping(queries[i].lower, queries[i].upper, [&](uint32_t index) {
-                        PairWriter(list, 1).write_as_it_is(static_cast<uint32_t>(i), index);
-                    });
+                    const Meetings meetings(list, static_cast<uint32_t>(i), false);
+                    s.visit_overlapping(queries[i].lower, queries[i].upper, meetings);
                 }
             },
             structure_);

@@ -16,7 +16,6 @@
 #include "base/tasks.h"
 #include "broad_phase/box.h"
 #include "broad_phase/pair_chunks.h"
-#include "broad_phase/sort.h"
 
 namespace lendulet {
 
@@ -38,6 +37,20 @@ struct BoxChanges {
     }
 };
 
+// A structure as PairChanges sees it.
+class ChangingStructure {
+public:
+    virtual int moving_count() const = 0;
+    virtual BroadBox moving_box(int place) const = 0;
+    virtual void change(const BoxChanges& changes) = 0;
+    // Append all pairs, and those of some boxes.
+    virtual void find_pairs(Array<BoxPair>& out) = 0;
+    virtual void find_pairs_of(const Array<BroadBox>& boxes, PairChunks& chunks, Array<BoxPair>& out) = 0;
+
+protected:
+    ~ChangingStructure() = default;
+};
+
 class PairChanges {
 public:
     explicit PairChanges(const Memory* memory)
@@ -48,33 +61,8 @@ public:
     template <class Structure>
     void update(Structure& structure, TaskPool& tasks, const BoxChanges& changes, int share, Array<BoxPair>& begun,
                 Array<BoxPair>& ended) {
-        int old_count = structure.moving_count(), common = std::min(old_count, changes.count);
-        int listed = changes.listed_below(common);
-        int gone = old_count - common, fresh = changes.count - common;
-        bool few = (static_cast<int64_t>(listed) + gone + fresh) * share < changes.count;
-        touched_.reserve(static_cast<size_t>(changes.count / share) + 1);  // so that later updates need not grow it
-        if (few) {
-            touched_.clear();
-            for (int i = 0; i < listed + gone; ++i) {
-                touched_.push_back(structure.moving_box(static_cast<int>(changes.place(i, listed, common))));
-            }
-            pairs_of_touched(structure, tasks, before_);
-        } else if (!known_) {
-            all_pairs(structure, tasks, before_);
-        }
-        if constexpr (requires { structure.change_moving(changes, tasks); }) structure.change_moving(changes, tasks);
-        else structure.set_moving(changes.boxes, changes.count, &tasks);
-        if (few) {
-            touched_.clear();
-            for (int i = 0; i < listed + fresh; ++i)
-                touched_.push_back(changes.boxes[changes.place(i, listed, common)]);
-            pairs_of_touched(structure, tasks, after_);
-        } else {
-            all_pairs(structure, tasks, after_);
-        }
-        append_differences(after_, before_, begun, ended);
-        known_ = !few;
-        if (known_) before_.swap(after_);
+        Adapted<Structure> adapted(structure, tasks);
+        update(adapted, changes, share, begun, ended);
     }
 
     // The structure has been set otherwise: what was kept of its pairs is of no use.
@@ -85,30 +73,12 @@ public:
     }
 
 private:
-    // The pairs of the boxes in touched_, sorted, each once.
     template <class Structure>
-    void pairs_of_touched(Structure& structure, TaskPool& tasks, Array<uint64_t>& keys) {
-        constexpr int grain = 64;
-        pairs_.clear();
-        if constexpr (requires { structure.find_pairs_of(tasks, touched_.data(), 0, pairs_); }) {
-            structure.find_pairs_of(tasks, touched_.data(), touched_.count(), pairs_);
-            return sorted_keys(keys);
-        }
-        chunks_.search(tasks, touched_.count(), grain, pairs_, [&](int begin, int end, PairList& list) {
-            for (int i = begin; i < end; ++i) {
-                const BroadBox& box = touched_[i];
-                structure.visit_overlapping(box.lower, box.upper,
-                                            [&](uint32_t other) { PairWriter(list, 1).write(box.index, other); });
-            }
-        });
-        sorted_keys(keys);
-    }
-    template <class Structure>
-    void all_pairs(Structure& structure, TaskPool& tasks, Array<uint64_t>& keys) {
-        pairs_.clear();
-        structure.find_pairs(tasks, pairs_);
-        sorted_keys(keys);
-    }
+    class Adapted;
+    void update(ChangingStructure& structure, const BoxChanges& changes, int share, Array<BoxPair>& begun,
+                Array<BoxPair>& ended);
+    void pairs_of_touched(ChangingStructure& structure, Array<uint64_t>& keys);
+    void all_pairs(ChangingStructure& structure, Array<uint64_t>& keys);
     void sorted_keys(Array<uint64_t>& keys);  // of pairs_, without those of a box and itself
 
     Array<uint64_t> before_, after_, swap_;  // a << 32 | b
@@ -116,6 +86,37 @@ private:
     Array<BroadBox> touched_;
     PairChunks chunks_;
     bool known_ = false;  // `before_` holds the pairs of the structure's present state
+};
+
+template <class Structure>
+class PairChanges::Adapted final : public ChangingStructure {
+public:
+    Adapted(Structure& structure, TaskPool& tasks) : structure_(structure), tasks_(tasks) {}
+    int moving_count() const override { return structure_.moving_count(); }
+    BroadBox moving_box(int place) const override { return structure_.moving_box(place); }
+    void change(const BoxChanges& changes) override {
+        if constexpr (requires { structure_.change_moving(changes, tasks_); })
+            structure_.change_moving(changes, tasks_);
+        else structure_.set_moving(changes.boxes, changes.count, &tasks_);
+    }
+    void find_pairs(Array<BoxPair>& out) override { structure_.find_pairs(tasks_, out); }
+    void find_pairs_of(const Array<BroadBox>& boxes, PairChunks& chunks, Array<BoxPair>& out) override {
+        if constexpr (requires { structure_.find_pairs_of(tasks_, boxes.data(), 0, out); }) {
+            structure_.find_pairs_of(tasks_, boxes.data(), boxes.count(), out);
+        } else {
+            constexpr int grain = 64;
+            chunks.search(tasks_, boxes.count(), grain, out, [&](int begin, int end, PairList& list) {
+                for (int i = begin; i < end; ++i) {
+                    const BroadBox& box = boxes[i];
+                    structure_.visit_overlapping(box.lower, box.upper, Meetings(list, box.index, true));
+                }
+            });
+        }
+    }
+
+private:
+    Structure& structure_;
+    TaskPool& tasks_;
 };
 
 }  // namespace lendulet

@@ -5,6 +5,8 @@
 // list is too small counts what it could not write, and is searched again after the list has been made larger.
 #pragma once
 
+#include <type_traits>
+
 #include "base/memory.h"
 #include "base/tasks.h"
 #include "broad_phase/box.h"
@@ -18,6 +20,11 @@ public:
     static constexpr size_t most_at_once = 64;
 
     PairList(Array<BoxPair>& pairs, bool may_grow) : pairs_(pairs), may_grow_(may_grow) {}
+    // One pair, for searches that find few.
+    void add(const BoxPair& pair) {
+        if (may_grow_ || pairs_.size() < pairs_.capacity()) pairs_.push_back(pair);
+        else ++missing_;
+    }
     // Pairs found for which there was no room.
     size_t missing() const { return missing_; }
 
@@ -58,6 +65,33 @@ private:
     PairList& list_;
     BoxPair *begin_, *next_;
 };
+
+// What a search for single boxes calls with the index of each that it meets. One type for all of them, so that each
+// structure has its search once.
+class Meetings {
+public:
+    // Appends the indices.
+    explicit Meetings(Array<uint32_t>& indices) : indices_(&indices) {}
+    // Appends pairs of a number with each: as they are, or the smaller index first.
+    Meetings(PairList& pairs, uint32_t own, bool sorted) : pairs_(&pairs), own_(own), sorted_(sorted) {}
+
+    void operator()(uint32_t index) const;
+
+private:
+    Array<uint32_t>* indices_ = nullptr;
+    PairList* pairs_ = nullptr;
+    uint32_t own_ = 0;
+    bool sorted_ = false;
+};
+
+inline void Meetings::operator()(uint32_t index) const {
+    if (indices_) {
+        indices_->push_back(index);
+        return;
+    }
+    const bool turned = sorted_ && index < own_;
+    pairs_->add(turned ? BoxPair{index, own_} : BoxPair{own_, index});
+}
 
 // Where a kernel writes pairs without knowing of lists: from `next` on there is room for most_at_once pairs, or `full`
 // has to be called before they are written. Plain data: kernels are compiled for several instruction sets.
@@ -111,30 +145,16 @@ public:
     // the halves of a range must append what one call for the whole does. Chunks have at least `grain` items.
     template <class Body>
     void search(TaskPool& tasks, int count, int grain, Array<BoxPair>& out, Body&& body) {
+        using Plain = std::remove_reference_t<Body>;
+        void (*const run)(void*, int, int, PairList&) = [](void* context, int begin, int end, PairList& list) {
+            (*static_cast<Plain*>(context))(begin, end, list);
+        };
         if (count <= 0) return;
         if (tasks.workers() == 1 || count <= grain) {  // the same items in the same order
             PairList list(out, true);
-            return body(0, count, list);
+            return run(&body, 0, count, list);
         }
-        int step = (count + max_chunks - 1) / max_chunks;
-        step = step < grain ? grain : step;
-        int chunks = (count + step - 1) / step;
-        for (int c = 0; c < chunks; ++c) chunks_[c].done = false;
-        for (bool again = true; again;) {
-            tasks.for_each(chunks, 1, [&](int first, int last, int) {
-                for (int c = first; c < last; ++c) {
-                    if (chunks_[c].done) continue;
-                    int begin = c * step, end = count - begin < step ? count : begin + step;
-                    chunks_[c].pairs.clear();
-                    PairList list(chunks_[c].pairs, false);
-                    body(begin, end, list);
-                    chunks_[c].missing = list.missing();
-                    chunks_[c].done = true;
-                }
-            });
-            again = make_room(chunks);
-        }
-        for (int c = 0; c < chunks; ++c) out.append(chunks_[c].pairs.data(), chunks_[c].pairs.size());
+        search_in_chunks(tasks, count, grain, out, {&body, run});
     }
 
     size_t bytes() const {
@@ -151,20 +171,12 @@ private:
         bool done = false;
     };
 
-    // Enlarges the lists that were too small, so that the next search of their chunks fits; a quarter more than needed,
-    // because the number of pairs goes up and down. False where all fitted.
-    bool make_room(int chunks) {
-        bool any = false;
-        for (int c = 0; c < chunks; ++c) {
-            Chunk& chunk = chunks_[c];
-            if (chunk.missing == 0) continue;
-            size_t needed = chunk.pairs.size() + chunk.missing;
-            chunk.pairs.reserve(needed + needed / 4 + PairList::most_at_once);
-            chunk.done = false;
-            any = true;
-        }
-        return any;
-    }
+    struct Body {
+        void* context;
+        void (*run)(void* context, int begin, int end, PairList& list);
+    };
+    void search_in_chunks(TaskPool& tasks, int count, int grain, Array<BoxPair>& out, Body body);
+    bool make_room(int chunks);
 
     Chunk chunks_[max_chunks];
 };

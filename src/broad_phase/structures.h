@@ -1,5 +1,5 @@
-// The list of broad-phase structures, in the order of BroadPhaseType. To add one: its class and header here, its
-// enumerator in lendulet/options.h, its name in names.cpp.
+// The broad-phase structures. To add one: its class and header here, its enumerator in lendulet/options.h, its case in
+// broad_phase.cpp, its name in names.cpp.
 //
 // A structure has, besides what BroadPhase has under the same name (set_fixed, set_moving, find_pairs, update, boxes,
 // bytes, check and, where it has a use for it, move_all):
@@ -16,10 +16,12 @@
 #include "broad_phase/sweep/sweep_1.h"
 #include "broad_phase/sweep/sweep_3.h"
 #include "broad_phase/wide_tree/wide_tree.h"
+#include "lendulet/options.h"
 
 namespace lendulet {
 
-using BroadPhaseStructure =
-    std::variant<AllPairs, Sweep1, Sweep3, RtreeQuadratic, RtreeStar, RtreeStr, RtreeOmt, WideTree>;
+using BroadPhaseStructure = std::variant<AllPairs, Sweep1, Sweep3, TwoTrees<RTree>, RtreeOmt, WideTree>;
+
+inline constexpr int broad_phase_types = static_cast<int>(BroadPhaseType::wide_tree) + 1;
 
 }  // namespace lendulet

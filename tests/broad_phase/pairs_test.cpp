@@ -120,6 +120,22 @@ TEST(PairsTest, GridsWithTouchingFlatAndInfiniteBoxes) {
     }
 }
 
+// A box without any end overlaps even what stands in the lanes of a block that hold no box.
+TEST(PairsTest, ABoxWithoutAnyEndMeetsBoxesAlone) {
+    for (int n = 1; n <= 24; ++n) {
+        Boxes boxes;
+        for (int i = 0; i < n; ++i) {
+            BroadBox box = make_box({}, {}, static_cast<uint32_t>(i));
+            for (int d = 0; d < 3; ++d) {
+                box.lower[d] = i == n / 2 ? -inf : 3.0f * static_cast<float>(i);
+                box.upper[d] = i == n / 2 ? inf : box.lower[d] + 1.0f;
+            }
+            boxes.push_back(box);
+        }
+        check(boxes, std::to_string(n) + " boxes");
+    }
+}
+
 TEST(PairsTest, HugeAndInfiniteBoxes) {
     constexpr float most = std::numeric_limits<float>::max();
     Boxes boxes;

@@ -95,16 +95,14 @@ TEST(StrTest, TilesAreAPermutationInRunsOfEight) {
     }
 }
 
-template <class Tree>
-class RtreeTest : public testing::Test {};
-using Trees = testing::Types<RTree<RtreePolicy::quadratic>, RTree<RtreePolicy::star>, RTree<RtreePolicy::str>>;
-TYPED_TEST_SUITE(RtreeTest, Trees);
+class RtreeTest : public testing::TestWithParam<RtreePolicy> {};
+INSTANTIATE_TEST_SUITE_P(All, RtreeTest, testing::Values(RtreePolicy::quadratic, RtreePolicy::star, RtreePolicy::str));
 
 // Down to nothing and up again, one box at a time, last ones first and with holes.
-TYPED_TEST(RtreeTest, ShrinksToNothingAndGrowsAgain) {
+TEST_P(RtreeTest, ShrinksToNothingAndGrowsAgain) {
     Memory memory;
     TaskPool tasks(1);
-    TypeParam tree(&memory);
+    RTree tree(&memory, GetParam());
     Boxes boxes = make_boxes("uniform", 600, 3);
     boxes[40].lower[2] = -inf;
     tree.build(boxes.data(), static_cast<int>(boxes.size()), nullptr);

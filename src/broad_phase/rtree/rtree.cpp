@@ -11,10 +11,9 @@ constexpr int few_boxes = block_size * block_size;  // what one group holds is p
 // A tree that is changed box by box may end up with more overlap than one that is built, so it is built anew after this
 // many changes for each box. Reinsertion keeps an R*-tree good by itself; what tiles do better than insertion is lost
 // soonest.
-template <RtreePolicy policy>
-constexpr int changes_before_rebuild = policy == RtreePolicy::star        ? 8
-                                       : policy == RtreePolicy::quadratic ? 2
-                                                                          : 1;
+constexpr int changes_before_rebuild(RtreePolicy policy) {
+    return policy == RtreePolicy::star ? 8 : policy == RtreePolicy::quadratic ? 2 : 1;
+}
 constexpr uint32_t unbounded_bit = 1u << 31;
 constexpr int reinserted_count = 3;  // of nine entries: 30 %, as Beckmann et al. found best
 
@@ -39,9 +38,9 @@ bool lane_holds(const BoxBlock& block, int lane, const BroadBox& box) {
 
 }  // namespace
 
-template <RtreePolicy policy>
-RTree<policy>::RTree(const Memory* memory)
-    : blocks_(memory),
+RTree::RTree(const Memory* memory, RtreePolicy policy)
+    : policy_(policy),
+      blocks_(memory),
       links_(memory),
       nodes_(memory),
       free_(memory),
@@ -60,8 +59,7 @@ RTree<policy>::RTree(const Memory* memory)
 // ---------------------------------------------------------------------------------------------------------------------
 // Nodes
 
-template <RtreePolicy policy>
-typename RTree<policy>::Ref RTree<policy>::new_node(int level) {
+RTree::Ref RTree::new_node(int level) {
     Ref node;
     if (free_.empty()) {
         node = static_cast<Ref>(nodes_.size());
@@ -77,8 +75,7 @@ typename RTree<policy>::Ref RTree<policy>::new_node(int level) {
     return node;
 }
 
-template <RtreePolicy policy>
-void RTree<policy>::clear() {
+void RTree::clear() {
     blocks_.clear();
     links_.clear();
     nodes_.clear();
@@ -91,15 +88,13 @@ void RTree<policy>::clear() {
     root_ = new_node(1);
 }
 
-template <RtreePolicy policy>
-int RTree<policy>::lane_of(Ref parent, Ref node) const {
+int RTree::lane_of(Ref parent, Ref node) const {
     int lane = 0;
     while (links_[parent].child[lane] != node) ++lane;
     return lane;
 }
 
-template <RtreePolicy policy>
-void RTree<policy>::put_at_end(Ref node, const RtreeEntry& entry) {
+void RTree::put_at_end(Ref node, const RtreeEntry& entry) {
     int lane = nodes_[node].count++;
     set_lane(blocks_[node], lane, entry.lower, entry.upper);
     links_[node].child[lane] = entry.child;
@@ -108,8 +103,7 @@ void RTree<policy>::put_at_end(Ref node, const RtreeEntry& entry) {
     else leaf_[entry.child] = node;
 }
 
-template <RtreePolicy policy>
-RtreeEntry RTree<policy>::entry_of(Ref node) const {
+RtreeEntry RTree::entry_of(Ref node) const {
     RtreeEntry entry;
     block_bounds(blocks_[node], entry.lower, entry.upper);
     entry.child = node;
@@ -117,14 +111,12 @@ RtreeEntry RTree<policy>::entry_of(Ref node) const {
     return entry;
 }
 
-template <RtreePolicy policy>
-RtreeEntry RTree<policy>::entry_at(Ref node, int lane) const {
+RtreeEntry RTree::entry_at(Ref node, int lane) const {
     return entry_for(box_in(blocks_[node], lane, links_[node].index[lane]), links_[node].child[lane]);
 }
 
 // Recomputes the bounds of a node whose entries have become fewer or smaller, and of those above it.
-template <RtreePolicy policy>
-void RTree<policy>::tighten(Ref node) {
+void RTree::tighten(Ref node) {
     for (; node != root_; node = nodes_[node].parent) {
         Ref parent = nodes_[node].parent;
         int lane = lane_of(parent, node);
@@ -142,8 +134,7 @@ void RTree<policy>::tighten(Ref node) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Building
 
-template <RtreePolicy policy>
-void RTree<policy>::build(const BroadBox* boxes, int count, TaskPool*) {
+void RTree::build(const BroadBox* boxes, int count, TaskPool*) {
     clear();
     count_ = count;
     changed_ = 0;
@@ -156,7 +147,7 @@ void RTree<policy>::build(const BroadBox* boxes, int count, TaskPool*) {
     packed_ = count <= few_boxes;
     if (packed_) {
         pack(boxes, count);
-    } else if constexpr (policy == RtreePolicy::str) {
+    } else if (policy_ == RtreePolicy::str) {
         pack_tiles(boxes, count);
     } else {
         for (int i = 0; i < count; ++i) insert_box(boxes[i], static_cast<uint32_t>(i));
@@ -164,8 +155,7 @@ void RTree<policy>::build(const BroadBox* boxes, int count, TaskPool*) {
 }
 
 // A few boxes: leaves in the caller's order under the root.
-template <RtreePolicy policy>
-void RTree<policy>::pack(const BroadBox* boxes, int count) {
+void RTree::pack(const BroadBox* boxes, int count) {
     uint32_t places[few_boxes];  // of the bounded ones
     int bounded_count = 0;
     for (int i = 0; i < count; ++i) {
@@ -191,8 +181,7 @@ void RTree<policy>::pack(const BroadBox* boxes, int count) {
     }
 }
 
-template <RtreePolicy policy>
-void RTree<policy>::pack_tiles(const BroadBox* boxes, int count) {
+void RTree::pack_tiles(const BroadBox* boxes, int count) {
     entries_.clear();
     for (int i = 0; i < count; ++i) {
         if (bounded(boxes[i])) entries_.push_back(entry_for(boxes[i], static_cast<uint32_t>(i)));
@@ -223,8 +212,7 @@ void RTree<policy>::pack_tiles(const BroadBox* boxes, int count) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Insertion
 
-template <RtreePolicy policy>
-void RTree<policy>::insert_box(const BroadBox& box, uint32_t place) {
+void RTree::insert_box(const BroadBox& box, uint32_t place) {
     if (!bounded(box)) {
         leaf_[place] = unbounded_bit | static_cast<uint32_t>(unbounded_.size());
         unbounded_.push_back(box);
@@ -236,23 +224,21 @@ void RTree<policy>::insert_box(const BroadBox& box, uint32_t place) {
 }
 
 // Puts an entry into some node of a level.
-template <RtreePolicy policy>
-void RTree<policy>::insert(const RtreeEntry& entry, int level) {
+void RTree::insert(const RtreeEntry& entry, int level) {
     Ref node = choose_node(entry, level);
     if (nodes_[node].count < block_size) put_at_end(node, entry);
     else overflow(node, entry);
 }
 
 // Goes down from the root, making room in the bounds on the way.
-template <RtreePolicy policy>
-typename RTree<policy>::Ref RTree<policy>::choose_node(const RtreeEntry& entry, int level) {
+RTree::Ref RTree::choose_node(const RtreeEntry& entry, int level) {
     Ref node = root_;
     if (empty())
         put_at_end(node, {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}, new_node(0), no_box});
     while (nodes_[node].level > level) {
         BoxBlock& block = blocks_[node];
         int count = nodes_[node].count;
-        bool star = policy == RtreePolicy::star && nodes_[node].level == 1;
+        bool star = policy_ == RtreePolicy::star && nodes_[node].level == 1;
         int lane = star ? choose_least_overlap(block, count, entry.lower, entry.upper)
                         : choose_least_growth(block, count, entry.lower, entry.upper);
         enlarge_lane(block, lane, entry);
@@ -262,12 +248,11 @@ typename RTree<policy>::Ref RTree<policy>::choose_node(const RtreeEntry& entry, 
 }
 
 // One entry too many for a node.
-template <RtreePolicy policy>
-void RTree<policy>::overflow(Ref node, const RtreeEntry& entry) {
+void RTree::overflow(Ref node, const RtreeEntry& entry) {
     RtreeEntry entries[split_count];
     for (int k = 0; k < block_size; ++k) entries[k] = entry_at(node, k);
     entries[block_size] = entry;
-    if constexpr (policy == RtreePolicy::star) {
+    if (policy_ == RtreePolicy::star) {
         uint32_t level_bit = 1u << nodes_[node].level;
         if (node != root_ && !(reinserted_levels_ & level_bit)) {
             reinserted_levels_ |= level_bit;
@@ -277,9 +262,8 @@ void RTree<policy>::overflow(Ref node, const RtreeEntry& entry) {
     split(node, entries);
 }
 
-template <RtreePolicy policy>
-void RTree<policy>::split(Ref node, const RtreeEntry entries[split_count]) {
-    uint32_t in_second = policy == RtreePolicy::star ? split_star(entries) : split_quadratic(entries);
+void RTree::split(Ref node, const RtreeEntry entries[split_count]) {
+    uint32_t in_second = policy_ == RtreePolicy::star ? split_star(entries) : split_quadratic(entries);
     int level = nodes_[node].level;
     Ref sibling = new_node(level);
     nodes_[node].count = 0;
@@ -300,8 +284,7 @@ void RTree<policy>::split(Ref node, const RtreeEntry entries[split_count]) {
 
 // The entries whose centres are farthest from the centre of all are taken out and inserted anew, the nearest of them
 // first ("close reinsert").
-template <RtreePolicy policy>
-void RTree<policy>::reinsert_farthest(Ref node, RtreeEntry entries[split_count]) {
+void RTree::reinsert_farthest(Ref node, RtreeEntry entries[split_count]) {
     float centre[3], distance[split_count];
     for (int d = 0; d < 3; ++d) {
         float lower = infinity, upper = -infinity;
@@ -334,8 +317,7 @@ void RTree<policy>::reinsert_farthest(Ref node, RtreeEntry entries[split_count])
 // ---------------------------------------------------------------------------------------------------------------------
 // Removal and change
 
-template <RtreePolicy policy>
-void RTree<policy>::remove_box(uint32_t place) {
+void RTree::remove_box(uint32_t place) {
     uint32_t leaf = leaf_[place];
     if (leaf & unbounded_bit) {
         uint32_t hole = leaf & ~unbounded_bit;
@@ -350,8 +332,7 @@ void RTree<policy>::remove_box(uint32_t place) {
     condense(leaf);
 }
 
-template <RtreePolicy policy>
-void RTree<policy>::remove_lane(Ref node, int lane) {
+void RTree::remove_lane(Ref node, int lane) {
     int last = --nodes_[node].count;
     const RtreeEntry moved = entry_at(node, last);
     set_lane(blocks_[node], lane, moved.lower, moved.upper);
@@ -362,8 +343,7 @@ void RTree<policy>::remove_lane(Ref node, int lane) {
 
 // Guttman's CondenseTree: nodes on the way up that hold too little are dissolved and what they held is inserted anew at
 // its level; a root with one child gives way to it.
-template <RtreePolicy policy>
-void RTree<policy>::condense(Ref node) {
+void RTree::condense(Ref node) {
     orphans_.clear();
     orphan_levels_.clear();
     while (node != root_ && nodes_[node].count < least_entries) {
@@ -388,8 +368,7 @@ void RTree<policy>::condense(Ref node) {
 }
 
 // A box that stays inside the bounds of its leaf stays there; the others leave and enter anew.
-template <RtreePolicy policy>
-void RTree<policy>::change_box(const BroadBox& box, uint32_t place) {
+void RTree::change_box(const BroadBox& box, uint32_t place) {
     uint32_t leaf = leaf_[place];
     if (!(leaf & unbounded_bit)) {
         Ref parent = nodes_[leaf].parent;
@@ -404,12 +383,11 @@ void RTree<policy>::change_box(const BroadBox& box, uint32_t place) {
     insert_box(box, place);
 }
 
-template <RtreePolicy policy>
-void RTree<policy>::change(const BoxChanges& changes, TaskPool& tasks) {
+void RTree::change(const BoxChanges& changes, TaskPool& tasks) {
     int common = count_ < changes.count ? count_ : changes.count, listed = changes.listed_below(common);
     int touched = listed + count_ - common + changes.count - common;
     changed_ += touched;
-    if (common <= few_boxes || changed_ > changes_before_rebuild<policy> * static_cast<int64_t>(common)) {
+    if (common <= few_boxes || changed_ > changes_before_rebuild(policy_) * static_cast<int64_t>(common)) {
         return build(changes.boxes, changes.count, &tasks);
     }
     for (int place = count_ - 1; place >= common; --place) remove_box(static_cast<uint32_t>(place));
@@ -421,31 +399,27 @@ void RTree<policy>::change(const BoxChanges& changes, TaskPool& tasks) {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-template <RtreePolicy policy>
-BroadBox RTree<policy>::box(int place) const {
+BroadBox RTree::box(int place) const {
     uint32_t leaf = leaf_[place];
     if (leaf & unbounded_bit) return unbounded_[leaf & ~unbounded_bit];
     int lane = lane_of(leaf, static_cast<uint32_t>(place));
     return box_in(blocks_[leaf], lane, links_[leaf].index[lane]);
 }
 
-template <RtreePolicy policy>
-WideBox RTree<policy>::bounds_of(Ref group) const {
+WideBox RTree::bounds_of(Ref group) const {
     float lower[3], upper[3];
     block_bounds(blocks_[group], lower, upper);
     return spread(lower, upper);
 }
 
-template <RtreePolicy policy>
-ScannedBoxes RTree<policy>::leaves() const {
+ScannedBoxes RTree::leaves() const {
     if (empty()) return {nullptr, nullptr, 0};
     constexpr int step = sizeof(Links) / sizeof(uint32_t);
     const Ref first = links_[root_].child[0];
     return {&blocks_[first], links_[first].index, count_ - unbounded_.count(), step};
 }
 
-template <RtreePolicy policy>
-void RTree<policy>::list_groups() {
+void RTree::list_groups() {
     groups_.clear();
     groups_.reserve(nodes_.size() / least_entries + 1);
     if (empty()) return;
@@ -459,15 +433,13 @@ void RTree<policy>::list_groups() {
     }
 }
 
-template <RtreePolicy policy>
-size_t RTree<policy>::bytes() const {
+size_t RTree::bytes() const {
     return blocks_.bytes() + links_.bytes() + nodes_.bytes() + free_.bytes() + groups_.bytes() + leaf_.bytes() +
            unbounded_.bytes() + unbounded_place_.bytes() + entries_.bytes() + next_entries_.bytes() + centres_.bytes() +
            orphans_.bytes() + orphan_levels_.bytes();
 }
 
-template <RtreePolicy policy>
-const char* RTree<policy>::check() const {
+const char* RTree::check() const {
     size_t reached = 0;
     int held = unbounded_.count();
     Ref stack[most_pending];
@@ -501,9 +473,5 @@ const char* RTree<policy>::check() const {
     if (held != count_) return "the tree does not hold all boxes";
     return reached + free_.size() == nodes_.size() ? "" : "nodes are lost";
 }
-
-template class RTree<RtreePolicy::quadratic>;
-template class RTree<RtreePolicy::star>;
-template class RTree<RtreePolicy::str>;
 
 }  // namespace lendulet

@@ -24,10 +24,9 @@ namespace lendulet {
 
 enum class RtreePolicy { quadratic, star, str };
 
-template <RtreePolicy policy>
 class RTree {
 public:
-    explicit RTree(const Memory* memory);
+    RTree(const Memory* memory, RtreePolicy policy);
 
     void build(const BroadBox* boxes, int count, TaskPool* tasks);
     void set(const BroadBox* boxes, int count, TaskPool* tasks) { build(boxes, count, tasks); }
@@ -107,6 +106,7 @@ private:
     void condense(Ref node);
     void change_box(const BroadBox& box, uint32_t place);
 
+    RtreePolicy policy_;
     int count_ = 0;
     bool packed_ = false;  // its leaves follow the root and are full but for the last
     int64_t changed_ = 0;  // boxes since the tree was built
@@ -126,9 +126,8 @@ private:
     Array<uint32_t> orphan_levels_;  // and where they belong
 };
 
-template <RtreePolicy policy>
 template <class Visit>
-void RTree<policy>::visit_groups_below(Ref node, const WideBox& box, Visit&& visit) const {
+void RTree::visit_groups_below(Ref node, const WideBox& box, Visit&& visit) const {
     Ref stack[most_pending];
     stack[0] = node;
     for (int top = 1; top > 0;) {
@@ -142,9 +141,8 @@ void RTree<policy>::visit_groups_below(Ref node, const WideBox& box, Visit&& vis
     }
 }
 
-template <RtreePolicy policy>
 template <class Visit>
-void RTree<policy>::visit_later_groups(Ref group, const WideBox& box, Visit&& visit) const {
+void RTree::visit_later_groups(Ref group, const WideBox& box, Visit&& visit) const {
     for (Ref node = group; node != root_; node = nodes_[node].parent) {
         Ref parent = nodes_[node].parent;
         uint32_t hits = overlaps(blocks_[parent], box) & (~0u << (lane_of(parent, node) + 1));

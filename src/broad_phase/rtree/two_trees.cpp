@@ -72,7 +72,7 @@ void between_groups(const Tree& tree, typename Tree::Ref group, const WideBox& b
 void pairs_of_leaves(const ScannedBoxes& moving, const ScannedBoxes& fixed, Array<BoxPair>& out) {
     PairList list(out, true);
     PairRoom room(list);
-    all_pairs_scan()(moving, fixed, 0, moving.count, room);
+    all_pairs_kernels().scan(moving, fixed, 0, moving.count, room);
 }
 
 }  // namespace
@@ -119,19 +119,19 @@ void TwoTrees<Tree>::find_pairs_by_groups(TaskPool& tasks, Array<BoxPair>& out) 
 // Unbounded boxes are few: each is tested against the others and taken through the trees.
 template <class Tree>
 void TwoTrees<Tree>::pairs_of_unbounded(Array<BoxPair>& out) const {
-    auto append = [&](uint32_t a, uint32_t b) { out.push_back(a < b ? BoxPair{a, b} : BoxPair{b, a}); };
+    PairList list(out, true);
     const Array<BroadBox>& moving = moving_.unbounded();
     for (int i = 0; i < moving.count(); ++i) {
         const BroadBox& box = moving[i];
-        auto with_box = [&](uint32_t other) { append(box.index, other); };
+        const Meetings meet(list, box.index, true);
         for (int j = i + 1; j < moving.count(); ++j) {
-            if (overlap(moving[j], box.lower, box.upper)) append(box.index, moving[j].index);
+            if (overlap(moving[j], box.lower, box.upper)) meet(moving[j].index);
         }
-        visit_finite_overlapping(moving_, box.lower, box.upper, with_box);
-        lendulet::visit_overlapping(fixed_, box.lower, box.upper, with_box);
+        visit_finite_overlapping(moving_, box.lower, box.upper, meet);
+        lendulet::visit_overlapping(fixed_, box.lower, box.upper, meet);
     }
     for (const BroadBox& box : fixed_.unbounded()) {
-        visit_finite_overlapping(moving_, box.lower, box.upper, [&](uint32_t other) { append(box.index, other); });
+        visit_finite_overlapping(moving_, box.lower, box.upper, Meetings(list, box.index, true));
     }
 }
 
@@ -168,8 +168,6 @@ const char* TwoTrees<Tree>::check() const {
 }
 
 template class TwoTrees<BoxTree>;
-template class TwoTrees<RTree<RtreePolicy::str>>;
-template class TwoTrees<RTree<RtreePolicy::quadratic>>;
-template class TwoTrees<RTree<RtreePolicy::star>>;
+template class TwoTrees<RTree>;
 
 }  // namespace lendulet

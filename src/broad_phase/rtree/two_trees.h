@@ -24,7 +24,10 @@ namespace lendulet {
 template <class Tree>
 class TwoTrees {
 public:
-    explicit TwoTrees(const Memory* memory) : fixed_(memory), moving_(memory), chunks_(memory), changes_(memory) {}
+    // `kind`: what else the trees want to know, the policy of an RTree.
+    template <class... Kind>
+    explicit TwoTrees(const Memory* memory, Kind... kind)
+        : fixed_(memory, kind...), moving_(memory, kind...), chunks_(memory), changes_(memory) {}
 
     void set_fixed(const BroadBox* boxes, int count, TaskPool* tasks = nullptr);
     void set_moving(const BroadBox* boxes, int count, TaskPool* tasks = nullptr);
@@ -60,8 +63,5 @@ private:
 };
 
 using RtreeOmt = TwoTrees<BoxTree>;
-using RtreeStr = TwoTrees<RTree<RtreePolicy::str>>;
-using RtreeQuadratic = TwoTrees<RTree<RtreePolicy::quadratic>>;
-using RtreeStar = TwoTrees<RTree<RtreePolicy::star>>;
 
 }  // namespace lendulet

@@ -10,8 +10,11 @@
 
 #include "broad_phase/box.h"
 #include "math/wide/bytes.h"
+#include "math/wide/quads.h"
 
 namespace lendulet {
+
+using Quad = Wide<float, 4>;
 
 inline constexpr int group_lanes = 64;  // boxes, the bits of a word
 inline constexpr int bound_count = 6;   // lower x, y, z, upper x, y, z
@@ -31,7 +34,6 @@ struct Bounds6 {
 
 // Steps as fine as they can be inside the bounds. Finite and positive scales, so that nothing becomes NaN.
 LENDULET_FORCE_INLINE void set_frame(CoarseBoxes& coarse, const Bounds6& bounds) {
-    using Quad = Wide<float, 4>;
     const Quad lower{bounds.at[0], bounds.at[1], bounds.at[2], 0}, upper{bounds.at[3], bounds.at[4], bounds.at[5], 0};
     const Quad steps = splat<Quad>(250.0f), least = splat<Quad>(1e-30f), most = splat<Quad>(FLT_MAX);
     const Quad half = splat<Quad>(0.5f), zero = splat<Quad>(0.0f);
@@ -44,20 +46,30 @@ LENDULET_FORCE_INLINE void set_frame(CoarseBoxes& coarse, const Bounds6& bounds)
 }
 
 LENDULET_FORCE_INLINE Wide<float, 4> steps_of(Wide<float, 4> sides, Wide<float, 4> centre, Wide<float, 4> scale) {
-    using Quad = Wide<float, 4>;
     return minimum(maximum((sides - centre) * scale, splat<Quad>(first_step)), splat<Quad>(last_step));
 }
 
+#if defined(__AVX512VL__)
+// Both sides of a box side by side, for to_bytes, which sees to what lies below the first step.
+LENDULET_FORCE_INLINE Wide<float, 8> eight_steps(const CoarseBoxes& frame, const BroadBox& box) {
+    using Eight = Wide<float, 8>;
+    const Eight steps = (load_wide<Eight>(box.lower) - load_quad_twice(frame.centre)) * load_quad_twice(frame.scale);
+    return minimum(steps, splat<Eight>(last_step));
+}
+#endif
+
 // The steps of a box: lower x, y, z, nothing, upper x, y, z, nothing, and those again.
 LENDULET_FORCE_INLINE Bytes16 steps_of(const CoarseBoxes& frame, Wide<float, 4> lower, Wide<float, 4> upper) {
-    using Quad = Wide<float, 4>;
     const Quad centre = load_wide<Quad>(frame.centre), scale = load_wide<Quad>(frame.scale);
     const Quad low = steps_of(lower, centre, scale), high = steps_of(upper, centre, scale);
     return to_bytes(low, high, low, high);
 }
 LENDULET_FORCE_INLINE Bytes16 steps_of(const CoarseBoxes& frame, const BroadBox& box) {
-    using Quad = Wide<float, 4>;
+#if defined(__AVX512VL__)
+    return to_bytes(eight_steps(frame, box));
+#else
     return steps_of(frame, load_wide<Quad>(box.lower), load_wide<Quad>(box.upper));
+#endif
 }
 
 // The steps of a box as a word: lower x in its lowest byte, then as above.
@@ -76,8 +88,13 @@ struct StepsOfTwo {
     uint64_t around, second;
 };
 LENDULET_FORCE_INLINE StepsOfTwo steps_of_two(const CoarseBoxes& frame, const BroadBox& a, const BroadBox& b) {
-    using Quad = Wide<float, 4>;
     using Words = Wide<uint64_t, 2>;
+#if defined(__AVX512VL__)
+    const Wide<float, 8> of_a = eight_steps(frame, a), of_b = eight_steps(frame, b);
+    const Wide<float, 8> around =
+        __builtin_shufflevector(minimum(of_a, of_b), maximum(of_a, of_b), 0, 1, 2, 3, 12, 13, 14, 15);
+    return {((Words)to_bytes(around))[0], ((Words)to_bytes(of_b))[0]};
+#else
     const Quad centre = load_wide<Quad>(frame.centre), scale = load_wide<Quad>(frame.scale);
     const Quad a_low = steps_of(load_wide<Quad>(a.lower), centre, scale),
                a_high = steps_of(load_wide<Quad>(a.upper), centre, scale),
@@ -85,6 +102,7 @@ LENDULET_FORCE_INLINE StepsOfTwo steps_of_two(const CoarseBoxes& frame, const Br
                b_high = steps_of(load_wide<Quad>(b.upper), centre, scale);
     const Words words = (Words)to_bytes(minimum(a_low, b_low), maximum(a_high, b_high), b_low, b_high);
     return {words[0], words[1]};
+#endif
 }
 
 inline void clear_steps(CoarseBoxes& coarse, uint32_t lane) {

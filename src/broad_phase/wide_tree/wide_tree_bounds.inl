@@ -1,7 +1,5 @@
 // Part of wide_tree_kernels.inl: filling groups, bounds of groups and blocks, and the test all searches are made of.
 
-using Quad = Wide<float, 4>;
-
 // A box with each bound in all lanes.
 template <class F>
 struct Spread {
@@ -74,6 +72,18 @@ LENDULET_FORCE_INLINE uint64_t may_overlap(const CoarseBoxes& group, int first, 
 }
 template <class F>
 LENDULET_FORCE_INLINE uint64_t may_overlap(const CoarseBoxes& group, Bytes16 steps) {
+#if defined(__AVX512BW__)
+    if constexpr (sizeof(F) == group_lanes) {  // in registers: through memory would take longer than the test
+        using B = BytesOf<F>;
+        const B all = repeat_eight(steps);
+        AllAtMost<B> hit;
+        for (int d = 0; d < 3; ++d) {
+            hit.require(load_bytes<B>(group.bounds[d]), repeat_one(all, 4 + d));
+            hit.require(repeat_one(all, d), load_bytes<B>(group.bounds[3 + d]));
+        }
+        return hit.bits();
+    }
+#endif
     return may_overlap<F>(group, 0, group_lanes, spread_steps(steps).at, 1);
 }
 
@@ -81,6 +91,25 @@ LENDULET_FORCE_INLINE uint64_t may_overlap(const CoarseBoxes& group, Bytes16 ste
 LENDULET_FORCE_INLINE bool meet(const BroadBox& a, const BroadBox& b) {
     auto quad = [](const float* p) { return load_wide<Quad>(p); };
     return three_at_most(quad(a.lower), quad(b.upper), quad(b.lower), quad(a.upper));  // the fourth is no bound
+}
+
+// Whether a box that changes meets another before, and after.
+struct MeetsTwice {
+    bool was, is;
+};
+LENDULET_FORCE_INLINE MeetsTwice meet(const WideTreeChange& mine, const BroadBox& before, const BroadBox& after) {
+#if defined(__AVX512DQ__)
+    using Eight = Wide<float, 8>;
+    using All = Wide<float, 16>;
+    const All own = load_wide<All>(mine.before.lower);
+    const All others = detail::join(load_wide<Eight>(before.lower), load_wide<Eight>(after.lower));
+    const All turned =  // their upper sides beside the lower ones of the box
+        __builtin_shufflevector(others, others, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11);
+    const uint32_t lower = at_most<All>(0x0707, own, turned), upper = at_most<All>(0x7070, turned, own);
+    return {((lower | upper) & 0xff) == 0x77, (lower | upper) >> 8 == 0x77};
+#else
+    return {meet(mine.before, before), meet(mine.after, after)};
+#endif
 }
 
 // The smallest or largest lane of a vector.

@@ -12,8 +12,6 @@ namespace lendulet {
 
 namespace {
 
-using Quad = Wide<float, 4>;
-
 constexpr float all_space = FLT_MAX;
 constexpr int ahead = 16;       // rows of a batch whose boxes are asked for
 constexpr int most_near = 512;  // groups beyond so many are likely not to be near

@@ -16,14 +16,15 @@ public:
     void search(int first, int count) {
         first_ = first;
         count_ = count;
+        const WideTreeChange* rows = changes_.rows + first;
+        const uint32_t* lanes = changes_.lanes + first;
+        const uint32_t nowhere = in_moving_ ? 0 : no_box;
         for (int i = 0; i < count; ++i) {
-            const WideTreeChange& change = changes_.rows[first + i];
             auto quad = [](const float* p) { return load_wide<Quad>(p); };
-            this->set(i, minimum(quad(change.after.lower), quad(change.before.lower)),
-                      maximum(quad(change.after.upper), quad(change.before.upper)));
-            const uint32_t lane = changes_.lanes[first + i];
-            this->rows_[i].index = in_moving_ ? lane / group_lanes : no_box;  // where the box itself is
-            this->rows_[i].unused = lane % group_lanes;
+            this->set(i, minimum(quad(rows[i].after.lower), quad(rows[i].before.lower)),
+                      maximum(quad(rows[i].after.upper), quad(rows[i].before.upper)));
+            this->rows_[i].index = lanes[i] / group_lanes | nowhere;  // where the box itself is
+            this->rows_[i].unused = lanes[i] % group_lanes;
         }
         if (in_moving_) look_in_own();
         this->run(count);
@@ -51,12 +52,15 @@ private:
     // Their own groups first, whose frames their steps are in already.
     void look_in_own() {
         Near near[Base::most_rows];
+        const CoarseBoxes* groups = this->tree_.coarse;
+        const uint64_t* changed = changes_.changed;
+        const StepsOfTwo* own = changes_.steps + first_;
         size_t n = 0;
-        for (int i = 0; i < count_; ++i) {
+        for (int i = 0, count = count_; i < count; ++i) {
             const uint32_t g = this->rows_[i].index, lane = this->rows_[i].unused;
-            const uint64_t steps = changes_.steps[first_ + i].around;
-            uint64_t lanes = may_overlap<F>(this->tree_.coarse[g], (Bytes16)Wide<uint64_t, 2>{steps, steps});
-            lanes &= ~(changes_.changed[g] & (all_lanes >> (group_lanes - 1 - lane)));
+            const uint64_t steps = own[i].around;
+            uint64_t lanes = may_overlap<F>(groups[g], (Bytes16)Wide<uint64_t, 2>{steps, steps});
+            lanes &= ~(changed[g] & (all_lanes >> (group_lanes - 1 - lane)));
             near[n] = {lanes, Base::entry(i, static_cast<int>(g))};
             n += one_if(lanes != 0);
         }
@@ -118,6 +122,9 @@ private:
         const Candidate *found = found_, *end = next_;
         next_ = found_;
         const BoxGroup* groups = this->tree_.groups;
+        const uint64_t* changed = changes_.changed;
+        const WideTreeChange *rows = changes_.rows, *searched = rows + first_;
+        const bool in_moving = in_moving_;
         for (int i = 0; i < compared_ahead && found + i < end; ++i) ask_for(found[i]);
         while (found < end) {
             if (out_.end - out_.next < static_cast<ptrdiff_t>(PairList::most_at_once)) out_.full(out_);
@@ -127,15 +134,15 @@ private:
                 if (end - found > compared_ahead) ask_for(found[compared_ahead]);
                 const auto entry = static_cast<uint32_t>(*found >> lane_bits);
                 const uint32_t i = *found % group_lanes, g = static_cast<uint32_t>(Base::node_of(entry));
-                const WideTreeChange& mine = changes_.rows[first_ + Base::row_of(entry)];
+                const WideTreeChange& mine = searched[Base::row_of(entry)];
                 const BroadBox *before = &groups[g].boxes[i], *after = before;
-                if (in_moving_ && changes_.changed[g] >> i & 1) {
-                    const int earlier = __builtin_popcountll(changes_.changed[g] & ~(all_lanes << i));
-                    const WideTreeChange& other = changes_.rows[changes_.first[g] + static_cast<uint32_t>(earlier)];
+                if (in_moving && changed[g] >> i & 1) {
+                    const int earlier = __builtin_popcountll(changed[g] & ~(all_lanes << i));
+                    const WideTreeChange& other = rows[changes_.first[g] + static_cast<uint32_t>(earlier)];
                     before = &other.before;
                     after = &other.after;
                 }
-                const bool was = meet(mine.before, *before), is = meet(mine.after, *after);
+                const auto [was, is] = meet(mine, *before, *after);
                 const uint32_t a = mine.after.index, b = after->index;
                 // Begun pairs ascend, ended ones descend; which it is cannot be foreseen.
                 const uint32_t swapped = (a ^ b) & (0u - static_cast<uint32_t>(one_if((a < b) != is)));

@@ -106,6 +106,20 @@ LENDULET_FORCE_INLINE void store_as_bytes(int8_t* to, const F* floats) {
     std::memcpy(to, &bytes, sizeof bytes);
 }
 
+#if defined(__AVX512BW__) && defined(__AVX512VL__)
+// The same of eight floats, of which those below -128 give that.
+LENDULET_FORCE_INLINE Bytes16 to_bytes(Wide<float, 8> floats) {
+    return (Bytes16)_mm256_cvtsepi32_epi8(_mm256_cvttps_epi32((__m256)floats));
+}
+// The first eight bytes over and over, and of such a vector one of the eight in all lanes.
+LENDULET_FORCE_INLINE Wide<int8_t, 64> repeat_eight(Bytes16 bytes) {
+    return (Wide<int8_t, 64>)_mm512_broadcastq_epi64((__m128i)bytes);
+}
+LENDULET_FORCE_INLINE Wide<int8_t, 64> repeat_one(Wide<int8_t, 64> eights, int which) {
+    return (Wide<int8_t, 64>)_mm512_shuffle_epi8((__m512i)eights, _mm512_set1_epi8(static_cast<char>(which)));
+}
+#endif
+
 // Each of the first bytes, 8 or 16 of them, four times.
 template <int Count>
 LENDULET_FORCE_INLINE void store_fourfold(uint32_t to[Count], Bytes16 bytes) {

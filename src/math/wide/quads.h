@@ -16,4 +16,11 @@ LENDULET_FORCE_INLINE bool three_at_most(Wide<float, 4> a, Wide<float, 4> b, Wid
 #endif
 }
 
+#if defined(__AVX__)
+// Four floats twice.
+LENDULET_FORCE_INLINE Wide<float, 8> load_quad_twice(const float* p) {
+    return (Wide<float, 8>)_mm256_broadcast_ps(reinterpret_cast<const __m128*>(p));
+}
+#endif
+
 }  // namespace lendulet
