@@ -41,13 +41,13 @@ float along_fixed_direction(const FacePoint& p) { return p.u + 0.618034f * p.v; 
 // symmetric points.
 template <class Score>
 float pick(FacePoint* points, int from, int count, Score&& score) {
-    float best_score = score(points[from]);
-    for (int i = from + 1; i < count; ++i) best_score = maximum(best_score, score(points[i]));
+    float scores[max_clipped_points], best_score = scores[from] = score(points[from]);
+    for (int i = from + 1; i < count; ++i) best_score = maximum(best_score, scores[i] = score(points[i]));
     float limit = best_score - tie * absolute(best_score);
     float end = from % 2 == 0 ? 1.0f : -1.0f;
     int best = -1;
     for (int i = from; i < count; ++i)
-        if (score(points[i]) >= limit &&
+        if (scores[i] >= limit &&
             (best < 0 || end * along_fixed_direction(points[i]) > end * along_fixed_direction(points[best])))
             best = i;
     swap(points[from], points[best]);

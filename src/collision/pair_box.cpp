@@ -1,8 +1,10 @@
 // Two sharp boxes: the wide kernel of batches with one lane, and the distance query where the features that face each
 // other do not overlap.
+#include "base/prefetch.h"
 #include "collision/batch/boxes.h"
 #include "collision/pair.h"
 #include "math/wide/gather.h"
+#include "math/wide/mask.h"
 #include "math/wide/wide.h"
 
 namespace lendulet {

@@ -60,19 +60,20 @@ template <int W>
 struct ListBlock {
     int32_t pair[W], first[W], second[W], a[W];
     alignas(64) float margin[W], way[W], axis[W], exchanged[W];
-    LENDULET_FORCE_INLINE ListBlock(const BoxBatch& batch, const int32_t* list, int begin, int count) {
+    LENDULET_FORCE_INLINE ListBlock(const BoxBatch& batch, const int32_t* list) {
         for (int l = 0; l < W; ++l) {
-            int32_t k = list[begin + l < count ? begin + l : count - 1];
-            float number = batch.feature[k] - 1.0f;
-            bool of_b = number >= 3.0f && number < 6.0f;
+            const int32_t k = list[l], number = static_cast<int32_t>(batch.feature[k]) - 1;
+            // Without branches: which of the two it is cannot be foreseen.
+            const auto of_b = static_cast<int32_t>(static_cast<uint32_t>(number - 3) < 3u);
+            const int32_t other = (batch.a[k] ^ batch.b[k]) & -of_b;
             pair[l] = k;
             a[l] = batch.a[k];
-            first[l] = of_b ? batch.b[k] : batch.a[k];
-            second[l] = of_b ? batch.a[k] : batch.b[k];
+            first[l] = batch.a[k] ^ other;
+            second[l] = batch.b[k] ^ other;
             margin[l] = batch.margin[k];
             way[l] = batch.way[k];
-            axis[l] = of_b ? number - 3.0f : number;
-            exchanged[l] = of_b ? 1.0f : 0.0f;
+            axis[l] = static_cast<float>(number - 3 * of_b);
+            exchanged[l] = static_cast<float>(of_b);
         }
     }
 };
@@ -82,7 +83,7 @@ void face_manifolds(BoxBatch& batch, const int32_t* list, int count) {
     using F = Wide<float, W>;
     const F zero = splat<F>(0.0f), half = splat<F>(0.5f), one = splat<F>(1.0f);
     for (int k = 0; k < count; k += W) {
-        const ListBlock<W> block(batch, list, k, count);
+        const ListBlock<W> block(batch, list + k);
         WideBox<F> reference = load_box<W>(batch.frames, block.first),
                    incident = load_box<W>(batch.frames, block.second);
         Vec3T<F> d = load_offsets<W>(batch.frames, block.first, block.second);
@@ -124,7 +125,7 @@ void edge_manifolds(BoxBatch& batch, const int32_t* list, int count) {
     const F zero = splat<F>(0.0f), one = splat<F>(1.0f), half = splat<F>(0.5f);
     auto sign_of = [&](F s) { return select(s > zero, one, zero - one); };
     for (int k = 0; k < count; k += W) {
-        const ListBlock<W> block(batch, list, k, count);
+        const ListBlock<W> block(batch, list + k);
         WideBox<F> a = load_box<W>(batch.frames, block.first), b = load_box<W>(batch.frames, block.second);
         const Vec3T<F> d = load_offsets<W>(batch.frames, block.first, block.second);
         const Vec3T<F> arm = load_arm<W>(batch.frames, block.a);
@@ -179,6 +180,16 @@ void edge_manifolds(BoxBatch& batch, const int32_t* list, int count) {
     }
 }
 
+// Asks for the boxes of the pairs some blocks ahead of number k: they lie scattered.
+template <int W>
+LENDULET_FORCE_INLINE void ask_for_boxes(const BoxBatch& batch, int k) {
+    constexpr int ahead = 24;
+    for (int i = k + ahead; i < k + ahead + W && i < batch.count; ++i) {
+        prefetch<2>(batch.frames + batch.a[i]);
+        prefetch<2>(batch.frames + batch.b[i]);
+    }
+}
+
 // Manifolds of a whole batch.
 template <int W>
 void collide_boxes(BoxBatch& batch) {
@@ -186,6 +197,7 @@ void collide_boxes(BoxBatch& batch) {
     int lists[2] = {0, 0};
     for (int k = 0; k < batch.count; k += W) {
         int live = batch.count - k < W ? batch.count - k : W;
+        if constexpr (W > 1) ask_for_boxes<W>(batch, k);
         for (int l = live; l < W; ++l) {
             batch.a[k + l] = batch.a[k], batch.b[k + l] = batch.b[k];
             batch.feature[k + l] = batch.margin[k + l] = batch.way[k + l] = 0.0f;
@@ -194,15 +206,19 @@ void collide_boxes(BoxBatch& batch) {
         F margin = load_wide<F>(batch.margin + k);
         Vec3T<F> d = load_offsets<W>(batch.frames, batch.a + k, batch.b + k);
         BestAxis<F> best = best_axis(a, b, d, load_wide<F>(batch.feature + k), load_wide<F>(batch.way + k));
-        uint32_t near = mask_bits(best.clearance <= margin) & ((1u << live) - 1u);
-        uint32_t by_edge = mask_bits(best.axis >= splat<F>(6.0f));
+        const uint32_t near = mask_bits(best.clearance <= margin) & ((1u << live) - 1u);
+        const uint32_t by_edge = mask_bits(best.axis >= splat<F>(6.0f));
         store_wide(batch.feature + k, best.axis + splat<F>(1.0f));
         store_wide(batch.clearance + k, best.clearance);
-        for (; near != 0; near &= near - 1) {
-            int l = __builtin_ctz(near);
-            uint32_t which = by_edge >> l & 1;
-            batch.list[which][lists[which]++] = k + l;
+        for (int which = 0; which < 2; ++which) {
+            const uint32_t listed = near & (which == 0 ? ~by_edge : by_edge);
+            store_numbers<F>(batch.list[which] + lists[which], listed, k);
+            lists[which] += __builtin_popcount(listed);
         }
+    }
+    for (int which = 0; W > 1 && which < 2; ++which) {  // the last block is filled up with the last pair
+        int32_t *const end = batch.list[which] + lists[which], last = lists[which] > 0 ? end[-1] : 0;
+        for (int l = 0; l < W; ++l) end[l] = last;
     }
     face_manifolds<W>(batch, batch.list[0], lists[0]);
     edge_manifolds<W>(batch, batch.list[1], lists[1]);

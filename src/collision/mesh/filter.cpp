@@ -13,6 +13,13 @@ namespace {
 // Hulls of more corners are taken for their boxes here.
 constexpr size_t most_corners = 32;
 
+// Bounds in the shape's own axes; those of a hull are known.
+CentredBox box_of(const Geometry& g) {
+    if (g.kind != GeometryKind::hull) return bounds(g, {0.0f, 0.0f, 0.0f, 1.0f});
+    const Vec3 half = 0.5f * (g.hull->upper - g.hull->lower), rounding{g.rounding, g.rounding, g.rounding};
+    return {0.5f * (g.hull->lower + g.hull->upper), half + rounding};
+}
+
 }  // namespace
 
 void filter_triangles(MeshFilterBatch& batch) { filter_triangles<4>(batch); }
@@ -26,13 +33,13 @@ MeshFilter::MeshFilter(const MeshQuery& q, float limit) : surface_(q.surface), f
     b.to_shape = q.to_contact;
     b.slack = MeshQuery::level * q.size;
     b.limit = limit + b.slack;
-    const CentredBox box = bounds(g, {0.0f, 0.0f, 0.0f, 1.0f});
+    const CentredBox box = box_of(g);
     const float reach = b.limit - g.rounding;
     const Vec3 half = box.half + Vec3{reach, reach, reach};
     b.box_lower = box.centre - half, b.box_upper = box.centre + half;
     if (g.kind != GeometryKind::hull) return;
     const HullData& hull = *g.hull;
-    b.box_centre = 0.5f * (hull.lower + hull.upper), b.box_half = 0.5f * (hull.upper - hull.lower);
+    b.box_centre = box.centre, b.box_half = 0.5f * (hull.upper - hull.lower);
     if (hull.vertices.size() > most_corners) return;
     b.hull = hull.vertices.data(), b.hull_count = static_cast<int>(hull.vertices.size());
     b.hull_face = hull.faces.data(), b.hull_faces = static_cast<int>(hull.faces.size());

@@ -148,8 +148,8 @@ LENDULET_FORCE_INLINE void scatter4(float* base, const int32_t* index, int strid
                                     const Wide<float, W> in[4]) {
     using namespace detail;
     if constexpr (W == 1) {
-        float* p = base + static_cast<ptrdiff_t>(index[0]) * stride + offset;
-        for (int k = 0; k < 4; ++k) p[k] = in[k];
+        // By bytes: where it leads to records also hold whole numbers, which are read as such.
+        std::memcpy(base + static_cast<ptrdiff_t>(index[0]) * stride + offset, in, 4 * sizeof(float));
     } else if constexpr (W > native_lanes) {
         float lanes[4][W];
         for (int k = 0; k < 4; ++k) store_wide(lanes[k], in[k]);

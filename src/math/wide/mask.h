@@ -83,8 +83,9 @@ LENDULET_FORCE_INLINE void store_packed(float* to, uint32_t bits, F value) {
 
 // Writes first + i for each bit i of `bits`, rising, to `to`, which needs room for all lanes of F: what stands behind
 // them is unset.
-template <class F>
-LENDULET_FORCE_INLINE void store_numbers(uint32_t* to, uint32_t bits, uint32_t first) {
+template <class F, class Integer>
+LENDULET_FORCE_INLINE void store_numbers(Integer* to, uint32_t bits, Integer first) {
+    static_assert(sizeof(Integer) == 4);
 #if defined(__AVX512F__)
     if constexpr (sizeof(F) == 64) {
         const __m512i counts = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
@@ -101,7 +102,7 @@ LENDULET_FORCE_INLINE void store_numbers(uint32_t* to, uint32_t bits, uint32_t f
         return;
     }
 #endif
-    for (; bits; bits &= bits - 1) *to++ = first + static_cast<uint32_t>(__builtin_ctz(bits));
+    for (; bits; bits &= bits - 1) *to++ = first + static_cast<Integer>(__builtin_ctz(bits));
 }
 
 }  // namespace lendulet

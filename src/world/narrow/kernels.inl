@@ -3,6 +3,7 @@
 // of a wider machine.
 #include <type_traits>
 
+#include "base/prefetch.h"
 #include "geometry/hull.h"
 #include "math/turned.h"
 #include "math/wide/gather.h"
