@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 
 #include "io/file.h"
 
@@ -39,11 +38,6 @@ Result<std::vector<int>> read_numbers(const std::string& option, const std::stri
     std::sort(numbers.begin(), numbers.end());
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
     return numbers;
-}
-
-Status check_writable(const std::string& path) {
-    if (path.empty() || std::ofstream(path, std::ios::binary | std::ios::app)) return {};
-    return Error{ErrorCode::io, printable(path) + ": cannot be written"};
 }
 
 }  // namespace lendulet::bench

@@ -14,7 +14,5 @@ std::vector<std::string> parts_of(const std::string& list);
 std::string joined(const std::vector<std::string>& names);
 // Whole numbers from `least` to `most`, ascending, each once. Error: bad_config, naming the option.
 Result<std::vector<int>> read_numbers(const std::string& option, const std::string& list, int least, int most);
-// Error io where the file cannot be written, so that a wrong name does not cost a long run; what is there stays.
-Status check_writable(const std::string& path);
 
 }  // namespace lendulet::bench

@@ -6,7 +6,7 @@
 using namespace lendulet;
 
 int main() {
-    World world = WorldBuilder{}.down_gravity(9.81f).solver_steps(4).friction(0.5f).build().value();
+    World world = WorldBuilder{}.down_gravity(9.81f).friction(0.5f).build().value();
     world.add_static_body({.shape = Box{{10, 0.5f, 10}}, .position = {0, -0.5f, 0}}).value();
     BodyId ball =
         world.add_rigid_body({.shape = Sphere{1}, .position = {0, 10, 0}, .density = 500, .restitution = 0.9f}).value();

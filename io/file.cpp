@@ -4,6 +4,11 @@
 #include <fstream>
 
 namespace lendulet {
+namespace {
+
+Error cannot_be_written(const std::string& path) { return {ErrorCode::io, printable(path) + ": cannot be written"}; }
+
+}  // namespace
 
 Result<std::string> read_file(const std::string& path, uint64_t limit) {
     auto refuse = [&](const std::string& why) { return Error{ErrorCode::io, printable(path) + ": " + why}; };
@@ -29,8 +34,23 @@ Status write_file(const std::string& path, std::string_view content) {
     std::ofstream out(path, std::ios::binary | std::ios::trunc);
     out.write(content.data(), static_cast<std::streamsize>(content.size()));
     out.close();
-    if (!out) return Error{ErrorCode::io, printable(path) + ": cannot be written"};
+    return out ? Status{} : cannot_be_written(path);
+}
+
+Status check_writable(const std::string& path) {
+    if (path.empty()) return {};
+    std::error_code ignored;
+    const bool is_there = std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
+    if (!std::ofstream(path, std::ios::binary | std::ios::app)) return cannot_be_written(path);
+    if (!is_there) std::filesystem::remove(path, ignored);
     return {};
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;
+    return fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
 }
 
 }  // namespace lendulet

@@ -57,9 +57,12 @@ void add_run_options(CLI::App& command, RunOptions& options, RawOptions& raw) {
         ->required();
     command.add_option("--seconds", raw.seconds, "how long to simulate, s (default 10)")->type_name("S");
     command.add_option("--dt", raw.dt, "the step, s, such as 0.01 or 1/60 (default 1/60)")->type_name("D");
-    command.add_option("--threads", options.world.workers, "threads, 1 to 64 (default 1)")->type_name("N");
+    command.add_option("--threads", options.world.workers, "threads, 1 to 64 (default 1)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 64));
     command.add_option("--solver-steps", options.world.solver_steps, "substeps of a step, 1 to 64 (default 8)")
-        ->type_name("N");
+        ->type_name("N")
+        ->check(CLI::Range(1, 64));
     command
         .add_option("--broad-phase", raw.broad_phase,
                     "all-pairs, sweep-1, sweep-3, rtree-quadratic, rtree-star, rtree-str, rtree-omt or default")
@@ -91,6 +94,8 @@ void finish_run_options(const CLI::App& command, const RawOptions& raw, RunOptio
     bool known_width = false;
     for (int width : {1, 4, 8, 16}) known_width |= options.world.width == width;
     if (command.count("--width") && !known_width) throw BadOption{"--width must be 1, 4, 8 or 16"};
+    options.given.seconds = command.count("--seconds") > 0;
+    options.given.dt = command.count("--dt") > 0;
     options.given.threads = command.count("--threads") > 0;
     options.given.solver_steps = command.count("--solver-steps") > 0;
     options.given.broad_phase = command.count("--broad-phase") > 0;
@@ -117,7 +122,7 @@ void add_scene_options(CLI::App& command, bench::SceneOptions& options) {
     command.add_option("--threads", options.threads, "thread counts, 1 to 64 (default 1)")->type_name("N,...");
     command.add_option("--steps", options.steps, "measured steps (default: what each scene is meant for)")
         ->type_name("N")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(1, 100000));
     command.add_option("--repeats", options.repeats, "rounds (default 3)")->type_name("N");
     command.add_option("--against", options.against, "bullet or none (default: bullet where it was built in)")
         ->type_name("NAME");
@@ -245,7 +250,10 @@ int execute(int argc, char** argv) {
     add_collision_options(*collision_command, collision);
     try {
         app.parse(argc, argv);
-        if (run_command->parsed()) finish_run_options(*run_command, raw, options);
+        if (run_command->parsed()) {
+            refuse_empty(*run_command);
+            finish_run_options(*run_command, raw, options);
+        }
         if (view_command->parsed()) {
             refuse_empty(*view_command);
             finish_view_options(give_up, view_options);

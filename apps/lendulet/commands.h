@@ -19,7 +19,7 @@ struct RunOptions {
     WorldConfig world;       // where an option was given; see `given`
     struct Given {
         bool threads = false, solver_steps = false, broad_phase = false, simplex = false, integrator = false,
-             width = false, no_sleep = false;
+             width = false, no_sleep = false, seconds = false, dt = false;
     } given;
     std::string json;    // file, "-" for standard output, empty for none
     std::string record;  // file, empty for none
@@ -48,6 +48,9 @@ bool is_repro(const std::string& name);
 Result<Scene> open_scene(const std::string& name, const RunOptions& options);
 // The JSON, if asked for, and the page for people, unless standard output is the JSON's.
 Status report(const RunSummary& summary, const RunOptions& options);
+
+// Before a run that may be long: whether all that is to be written can be, each to a file of its own.
+Status check_outputs(const RunOptions& options);
 
 int run(const RunOptions& options);
 int replay(const RunOptions& options);  // of a repro file; 1 where its bits are not those that were saved

@@ -1,6 +1,7 @@
 // The command line program `lendulet`.
 #include <cstdio>
 #include <exception>
+#include <new>
 
 #include "apps/lendulet/commands.h"
 
@@ -17,7 +18,9 @@ int lendulet::cli::fail(std::string_view sentence) {
 int main(int argc, char** argv) {
     try {
         return lendulet::cli::execute(argc, argv);
-    } catch (const std::exception& problem) {  // such as running out of memory
+    } catch (const std::bad_alloc&) {  // of what the core asks for itself it says so too
+        return lendulet::cli::fail("out of memory");
+    } catch (const std::exception& problem) {  // such as no more threads
         return lendulet::cli::fail(problem.what());
     }
 }

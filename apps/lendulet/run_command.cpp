@@ -1,13 +1,12 @@
 // `lendulet run SCENE`: simulates a built-in scene or a glTF file and says what came of it.
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include "apps/lendulet/commands.h"
+#include "apps/lendulet/interrupt.h"
 #include "apps/lendulet/progress.h"
 #include "io/file.h"
 #include "io/gltf.h"
@@ -17,9 +16,6 @@
 namespace lendulet::cli {
 
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-void on_interrupt(int) { interrupted = 1; }
 
 bool ends_with(const std::string& text, std::string_view end) {
     if (text.size() < end.size()) return false;
@@ -42,14 +38,6 @@ Configure configuration(const RunOptions& options) {
         if (given.width) builder.width(options.world.width);
         if (given.no_sleep) builder.sleep(false);
     };
-}
-
-// Files are opened before the simulation, so that a wrong name does not cost a long run.
-Status check_writable(const std::string& path) {
-    if (path.empty() || path == "-") return {};
-    std::ofstream file(path, std::ios::binary | std::ios::app);
-    if (!file) return Error{ErrorCode::io, printable(path) + ": cannot be written"};
-    return {};
 }
 
 Status simulate(Scene& scene, const RunOptions& options, RunObserver& observer, RecordingWriter* recording) {
@@ -92,6 +80,19 @@ Status report(const RunSummary& summary, const RunOptions& options) {
     return {};
 }
 
+Status check_outputs(const RunOptions& options) {
+    const std::string json = options.json == "-" ? "" : options.json;
+    const bool reads = is_gltf(options.scene) || is_repro(options.scene);
+    for (const std::string& out : {json, options.record}) {
+        if (reads && !out.empty() && is_same_file(out, options.scene))
+            return Error{ErrorCode::io, printable(out) + ": would be written over the scene that is read"};
+        if (Status writable = check_writable(out); !writable) return writable;
+    }
+    if (!json.empty() && is_same_file(json, options.record))
+        return Error{ErrorCode::io, "--json and --record name the same file: " + printable(json)};
+    return {};
+}
+
 bool is_gltf(const std::string& name) { return ends_with(name, ".gltf") || ends_with(name, ".glb"); }
 bool is_repro(const std::string& name) { return ends_with(name, ".json"); }
 
@@ -106,12 +107,12 @@ Result<Scene> open_scene(const std::string& name, const RunOptions& options) {
 }
 
 int run(const RunOptions& options) {
+    const Interruptible interruptible;
     if (is_repro(options.scene)) return replay(options);
+    if (Status writable = check_outputs(options); !writable) return fail(writable.error().message);
     Result<Scene> opened = open_scene(options.scene, options);
     if (!opened.ok()) return fail(opened.error().message);
     Scene& scene = opened.value();
-    Status writable = check_writable(options.json);
-    if (!writable.ok()) return fail(writable.error().message);
     std::optional<RecordingWriter> recording;
     if (!options.record.empty()) {
         Result<RecordingWriter> created = RecordingWriter::create(options.record, scene.name, options.dt);
@@ -120,13 +121,10 @@ int run(const RunOptions& options) {
         Status begun = recording->begin(scene.world);
         if (!begun.ok()) return fail(begun.error().message);
     }
-    interrupted = 0;
-    std::signal(SIGINT, on_interrupt);
     RunObserver observer(scene);
     auto start = std::chrono::steady_clock::now();
     Status simulated = simulate(scene, options, observer, recording ? &*recording : nullptr);
     double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    std::signal(SIGINT, SIG_DFL);
     if (!simulated.ok()) return fail(simulated.error().message);
     if (recording) {
         Status finished = recording->finish(scene.world);

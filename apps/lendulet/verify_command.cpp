@@ -11,7 +11,7 @@ namespace lendulet::cli {
 int verify(const VerifyOptions& options) {
     for (const std::string* file : {&options.json, &options.html, &options.svg}) {
         if (file->empty() || *file == "-") continue;
-        Status writable = bench::check_writable(*file);
+        Status writable = check_writable(*file);
         if (!writable.ok()) return fail(writable.error().message);
     }
     Result<verify::Report> measured = verify::run(options.run);

@@ -140,9 +140,10 @@ struct StaticBodyDef {
 class World;
 struct WorldData;
 
-// What is the same for bodies that move and bodies that do not. Views are cheap, hold no data and live until the world
-// changes its set of bodies. Every reading call is const and may run on several threads while no step and no writing
-// call runs.
+// What is the same for bodies that move and bodies that do not. Views are cheap, hold no data and live as long as their
+// body and its world: a view of a removed body ends the program with a sentence, as a stale id does. So does the number
+// of a collider that the body has not, but for collider(). Every reading call is const and may run on several threads
+// while no step and no writing call runs.
 class StaticBodyRef {
 public:
     BodyId id() const;
@@ -161,14 +162,15 @@ public:
     const CollisionFilter& filter(int collider = 0) const;
     const Material& material(int collider = 0) const;  // as given
     Events events(int collider = 0) const;
-    ColliderId collider(int index = 0) const;
-    Aabb aabb() const;  // of all colliders, without margin
+    ColliderId collider(int index = 0) const;  // null where there are not so many
+    Aabb aabb() const;                         // of all colliders, without margin
 
 protected:
     friend class World;
-    StaticBodyRef(WorldData& world, uint32_t slot) : world_(&world), slot_(slot) {}
+    StaticBodyRef(WorldData& world, BodyId id) : world_(&world), id_(id) {}
+    uint32_t slot() const;  // of a body that there still is
     WorldData* world_;
-    uint32_t slot_;
+    BodyId id_;
 };
 
 // A body that moves. State is momentum p and angular momentum L; velocities are derived.
@@ -192,7 +194,8 @@ public:
     // T^-1(u) = u . [u / m + (I^-1 ((point - x) x u)) x (point - x)], 1/kg. (thesis 3.3.2, from Baraff)
     float impulse_effectiveness(Position point, Vec3 direction) const;
 
-    // Writing calls. Each gives an error and changes nothing where an argument is not finite, and wakes the body.
+    // Writing calls. Each gives an error and changes nothing where an argument is not finite, and wakes the body. Of
+    // kinematic bodies momenta, impulses, forces and torques do nothing: they have velocities alone.
     Status set_pose(Position position, Quat orientation);  // quaternions within 1e-3 of unit length are normalised
     Status set_velocity(Vec3 velocity);
     Status set_angular_velocity(Vec3 angular_velocity);
@@ -201,7 +204,10 @@ public:
     Status apply_impulse(Vec3 impulse, Position point);  // N s at a world point: p += J, L += (point - x) x J
     Status apply_impulse(Vec3 impulse);                  // at the centre of mass
     Status apply_angular_impulse(Vec3 angular_impulse);  // N m s
-    Status apply_force(Vec3 force, Position point);      // N, held during the next step
+    // N, held during the next step. A spring of the program's own, computed from where things are when the step begins,
+    // gains energy so (explicit Euler); given as the impulse dt * force it acts before the step moves anything and
+    // keeps it (symplectic Euler, docs/integrators.md).
+    Status apply_force(Vec3 force, Position point);
     Status apply_force(Vec3 force);
     Status apply_torque(Vec3 torque);  // N m, held during the next step
     // Kinematic bodies: velocities such that the body arrives at this pose after a step of `dt`.

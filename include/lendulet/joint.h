@@ -11,7 +11,8 @@
 
 namespace lendulet {
 
-// Bounds of a joint coordinate, in m or rad; lower > upper means free, lower == upper locked.
+// Bounds of a joint coordinate, in m or rad; lower > upper means free, lower == upper locked. Angles lie within one
+// turn of 0; lengths are refused where the whole world, 4e7 m across, is out of bounds.
 struct Limit {
     float lower = 1.0f, upper = -1.0f;
     constexpr bool free() const { return lower > upper; }
@@ -29,7 +30,7 @@ struct Motor {
 struct Spring {
     float stiffness = 0.0f;  // N/m or N m/rad; 0: no spring
     float damping = 0.0f;    // N s/m or N m s/rad
-    float target = 0.0f;     // m or rad
+    float target = 0.0f;     // m, within 4e7, or rad, within one turn of 0
     float max_force = std::numeric_limits<float>::infinity();
     float target_velocity = 0.0f;  // m/s or rad/s
 };
@@ -68,7 +69,7 @@ inline constexpr int joint_coordinates = 8;
 struct JointDef {
     JointType type = JointType::fixed;
     BodyId body_a{}, body_b{};       // not both static; A may be static or kinematic, or B
-    Transform frame_a{}, frame_b{};  // joint frame in each body's frame
+    Transform frame_a{}, frame_b{};  // joint frame in each body's frame, within 4e7 m
     // hinge: angle about x, rad in (-pi, pi]; slider: travel along x, m; distance: of the two frames' origins, m, where
     // {0, l} is a rope, {l, l} a rod and a spring alone a spring; others: ignored
     Limit limit{};

@@ -59,6 +59,9 @@ template <class F>
 LENDULET_FORCE_INLINE constexpr Vec3T<F>& operator-=(Vec3T<F>& a, Vec3T<F> b) {
     return a = a - b;
 }
+LENDULET_FORCE_INLINE constexpr Vec3& operator*=(Vec3& a, float s) { return a = s * a; }
+LENDULET_FORCE_INLINE constexpr Vec3 operator/(Vec3 a, float s) { return {a.x / s, a.y / s, a.z / s}; }
+LENDULET_FORCE_INLINE constexpr Vec3& operator/=(Vec3& a, float s) { return a = a / s; }
 constexpr bool operator==(Vec3 a, Vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 template <class F>
@@ -115,6 +118,8 @@ struct Position {
 LENDULET_FORCE_INLINE constexpr Vec3 operator-(Position a, Position b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 LENDULET_FORCE_INLINE constexpr Position operator+(Position a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 LENDULET_FORCE_INLINE constexpr Position operator-(Position a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+LENDULET_FORCE_INLINE constexpr Position& operator+=(Position& a, Vec3 b) { return a = a + b; }
+LENDULET_FORCE_INLINE constexpr Position& operator-=(Position& a, Vec3 b) { return a = a - b; }
 constexpr bool operator==(Position a, Position b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 // The vector from the world's origin to p.
 LENDULET_FORCE_INLINE constexpr Vec3 from_origin(Position p) { return {p.x, p.y, p.z}; }

@@ -90,7 +90,7 @@ private:
 // bodies only.
 struct Plane {
     Vec3 normal{0.0f, 1.0f, 0.0f};
-    float offset = 0.0f;
+    float offset = 0.0f;  // in a world: its plane lies within 1e7 m of its body
 };
 
 // What triangles may have besides their corners.

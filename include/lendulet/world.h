@@ -23,7 +23,7 @@
 namespace lendulet {
 
 // Memory of a world comes from here; the default is the heap (malloc). `allocate` must give memory aligned to
-// `alignment` (a power of two up to 64) or null, which ends the program.
+// `alignment` (a power of two up to 64) or null, which ends the program with a sentence and exit code 2.
 struct AllocatorHook {
     void* user = nullptr;
     void* (*allocate)(void* user, size_t bytes, size_t alignment) = nullptr;
@@ -48,7 +48,7 @@ struct WorldConfig {
     int solver_steps = 8;
     float rigid_separation_speed = 3.0f;   // m/s: fastest that overlap between two rigid bodies is undone
     float static_separation_speed = 3.0f;  // m/s: the same against static and kinematic bodies
-    float friction = 0.5f;                 // default static and dynamic coefficient
+    float friction = 0.5f;                 // default static and dynamic coefficient, 0 .. 1e6
     float restitution = 0.0f;              // default bounciness, 0 .. 1
     BroadPhaseType broad_phase = BroadPhaseType::wide_tree;
     SimplexSolver simplex = SimplexSolver::half_space;
@@ -131,6 +131,7 @@ struct Capacity {
     int joints = 0;
 };
 
+// A world that was moved from can be assigned to and destroyed; any other call ends the program with a sentence.
 class World {
 public:
     World(World&&) noexcept;
@@ -174,8 +175,9 @@ public:
     Result<JointDef> joint_at(JointType type, BodyId a, BodyId b, Position anchor,
                               Vec3 axis = {1.0f, 0.0f, 0.0f}) const;
 
-    // False for handles of removed bodies and joints and for those of other worlds.
+    // False for handles of removed bodies, colliders and joints and for those of other worlds.
     bool alive(BodyId id) const;
+    bool alive(ColliderId id) const;
     bool alive(JointId id) const;
     // Views; a stale id, or get() on a static body, ends the program with a sentence: ask alive() where it may be
     // stale.
@@ -198,6 +200,8 @@ public:
     // Errors: bad_time_step.
     Status update(float dt);
     Status set_gravity(Vec3 gravity);
+    // WorldConfig::hit_speed from the next step on. Errors: bad_config.
+    Status set_hit_speed(float speed);
     const WorldConfig& config() const;
     const StepStatistics& statistics() const;
     double time() const;  // seconds simulated
@@ -239,7 +243,9 @@ public:
     // A number that the bodies of an island had in common in the last step: those that touch or are joined and move.
     // -1 for bodies that rest, for static and for kinematic ones.
     int64_t island(BodyId id) const;
-    std::span<const Overlap> overlaps() const;  // triggers, of the last step; those at rest first
+    // Triggers, of the last step; those at rest first. The list stays as it is until the next update() or restore(),
+    // whatever is removed or filtered out meanwhile: alive() tells whom it names that is gone.
+    std::span<const Overlap> overlaps() const;
 
     // --- events (see events.h): what the last update() did. Empty after restore() and in a fork, until the next one.
     std::span<const ContactEvent> contact_begins() const;
@@ -311,6 +317,7 @@ public:
 private:
     friend class WorldBuilder;
     explicit World(std::unique_ptr<WorldData> data);
+    WorldData& data() const;
     void visit_aabbs(void (*visit)(void*, const AabbView&), void* context) const;
     std::unique_ptr<WorldData> data_;
 };

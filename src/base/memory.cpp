@@ -6,9 +6,10 @@
 namespace lendulet {
 namespace {
 
+// With the exit code of detail::fail(), and at once: what would be tidied up might need memory too.
 [[noreturn]] void out_of_memory(size_t bytes) {
     std::fprintf(stderr, "lendulet: out of memory (%zu bytes)\n", bytes);
-    std::abort();
+    std::_Exit(2);
 }
 
 // The heap aligns for plain types only, and aligned memory cannot be enlarged. So blocks are longer than asked for, and

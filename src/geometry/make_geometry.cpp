@@ -1,6 +1,7 @@
 // From the public Shape to the engine's Geometry: the one place where sizes of shapes are checked.
 #include <string>
 
+#include "base/text.h"
 #include "geometry/geometry.h"
 #include "geometry/hull.h"
 #include "geometry/mesh.h"
@@ -51,7 +52,7 @@ private:
         if (failed_) return;
         failed_ = true;
         code_ = code;
-        message_ = std::string(shape_) + ": " + name + problem + std::to_string(value) + ".";
+        message_ = std::string(shape_) + ": " + name + problem + text(value) + ".";
     }
     const char* shape_;
     bool failed_ = false;

@@ -17,17 +17,6 @@ void wake_pairs_of(WorldData& world, uint32_t collider, Visit&& visit) {
     });
 }
 
-// Removes an overlap that is not one any more from what the user reads.
-void forget_overlap(WorldData& world, const ColliderPair& p) {
-    if (!p.hit) return;
-    const ColliderId a = world.colliders.id(p.a), b = world.colliders.id(p.b);
-    size_t kept = 0;
-    for (const Overlap& o : world.overlaps)
-        if (!((o.trigger == a && o.other == b) || (o.trigger == b && o.other == a))) world.overlaps[kept++] = o;
-    world.overlaps.resize_unset(kept);
-    world.resting.hits_changed = true;
-}
-
 // Wakes what a collider lies in and may meet now.
 void wake_newly_met(WorldData& world, uint32_t collider) {
     const Pose& pose = world.bodies.pose[world.colliders.info[collider].body];
@@ -84,22 +73,23 @@ void set_body_type(WorldData& world, uint32_t slot, BodyType type) {
 
 Status RigidBodyRef::set_type(BodyType type) {
     constexpr const char* call = "set_type";
-    const BodyInfo& info = world_->bodies.info[slot_];
+    const uint32_t body = slot();
+    const BodyInfo& info = world_->bodies.info[body];
     if (type != BodyType::dynamic && type != BodyType::kinematic)
         return Error{ErrorCode::bad_collider, std::string(call) + ": a body that moves cannot become static"};
     if (type == info.type) return {};
     if (info.massless)
         return Error{ErrorCode::bad_mass, std::string(call) + ": it was added as kinematic, without mass"};
-    const BodyMass& mass = world_->bodies.mass_as_dynamic(slot_);
+    const BodyMass& mass = world_->bodies.mass_as_dynamic(body);
     if (!is_finite(mass.mass * velocity()) || !is_finite(max_component(mass.inertia) * angular_velocity()))
         return Error{ErrorCode::non_finite, std::string(call) + ": momentum and angular momentum must be finite"};
     wake();
-    wake_touching(*world_, slot_);
-    world_->joints.for_each_of(slot_, [&](uint32_t joint) {
+    wake_touching(*world_, body);
+    world_->joints.for_each_of(body, [&](uint32_t joint) {
         wake_body(*world_, world_->joints.info[joint].body_a);
         wake_body(*world_, world_->joints.info[joint].body_b);
     });
-    set_body_type(*world_, slot_, type);
+    set_body_type(*world_, body, type);
     for (uint32_t c = info.first_collider; c != no_slot; c = world_->colliders.info[c].next) renew_pairs_of(*world_, c);
     return {};
 }
@@ -109,9 +99,7 @@ void set_collider_filter(WorldData& world, uint32_t collider, const CollisionFil
     world.query_scene.changed(collider);
     wake_pairs_of(world, collider, [&](uint32_t number) {
         const ColliderPair& p = world.pairs.pairs[number];
-        if (wanted(world, {p.a, p.b})) return;
-        forget_overlap(world, p);
-        forget_pair(world, number);
+        if (!wanted(world, {p.a, p.b})) forget_pair(world, number);
     });
     wake_newly_met(world, collider);
     world.refiltered.push_back(collider);
@@ -125,7 +113,7 @@ void set_collider_material(WorldData& world, uint32_t collider, const Material& 
 }
 
 Status World::set_filter(ColliderId id, const CollisionFilter& filter) {
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (!world.colliders.alive(id)) return no_such(world.colliders.slots, id.generation, "set_filter", "collider");
     set_collider_filter(world, id.index, filter);
     return {};
@@ -133,7 +121,7 @@ Status World::set_filter(ColliderId id, const CollisionFilter& filter) {
 
 Status World::set_material(ColliderId id, const Material& material) {
     constexpr const char* call = "set_material";
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (!world.colliders.alive(id)) return no_such(world.colliders.slots, id.generation, call, "collider");
     if (!world.colliders.materials[id.index].empty())
         return Error{ErrorCode::bad_collider, std::string(call) + ": its triangles have materials of their own"};
@@ -145,7 +133,7 @@ Status World::set_material(ColliderId id, const Material& material) {
 }
 
 Status World::set_events(ColliderId id, Events events) {
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (!world.colliders.alive(id)) return no_such(world.colliders.slots, id.generation, "set_events", "collider");
     if (Status s = check_events(events, "set_events"); !s) return s;
     set_asks(world, id.index, events);
@@ -157,28 +145,28 @@ Status World::set_events(ColliderId id, Events events) {
 }
 
 Status RigidBodyRef::set_damping(float linear, float angular) {
-    BodyInfo& info = world_->bodies.info[slot_];
+    BodyInfo& info = world_->bodies.info[slot()];
     if (Status s = check_drag(linear, angular, info.gravity_factor, "set_damping"); !s) return s;
     info.linear_damping = linear, info.angular_damping = angular;
     wake();
     return {};
 }
 Status RigidBodyRef::set_gravity_factor(float factor) {
-    BodyInfo& info = world_->bodies.info[slot_];
+    BodyInfo& info = world_->bodies.info[slot()];
     if (Status s = check_drag(info.linear_damping, info.angular_damping, factor, "set_gravity_factor"); !s) return s;
     info.gravity_factor = factor;
     wake();
     return {};
 }
-void RigidBodyRef::set_bullet(bool bullet) { world_->bodies.info[slot_].bullet = bullet; }
+void RigidBodyRef::set_bullet(bool bullet) { world_->bodies.info[slot()].bullet = bullet; }
 void RigidBodyRef::set_allow_sleep(bool allow) {
-    world_->bodies.info[slot_].allow_sleep = allow;
+    world_->bodies.info[slot()].allow_sleep = allow;
     if (!allow) wake();
 }
-float RigidBodyRef::linear_damping() const { return world_->bodies.info[slot_].linear_damping; }
-float RigidBodyRef::angular_damping() const { return world_->bodies.info[slot_].angular_damping; }
-float RigidBodyRef::gravity_factor() const { return world_->bodies.info[slot_].gravity_factor; }
-bool RigidBodyRef::bullet() const { return world_->bodies.info[slot_].bullet; }
-bool RigidBodyRef::allow_sleep() const { return world_->bodies.info[slot_].allow_sleep; }
+float RigidBodyRef::linear_damping() const { return world_->bodies.info[slot()].linear_damping; }
+float RigidBodyRef::angular_damping() const { return world_->bodies.info[slot()].angular_damping; }
+float RigidBodyRef::gravity_factor() const { return world_->bodies.info[slot()].gravity_factor; }
+bool RigidBodyRef::bullet() const { return world_->bodies.info[slot()].bullet; }
+bool RigidBodyRef::allow_sleep() const { return world_->bodies.info[slot()].allow_sleep; }
 
 }  // namespace lendulet

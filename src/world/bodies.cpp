@@ -49,8 +49,10 @@ Result<CheckedCollider> check_collider(WorldData& world, const ColliderDef& def,
     Result<Geometry> geometry = make_geometry(def.shape);
     if (!geometry) return refused(geometry.error().code, call, geometry.error().message);
     CheckedCollider c{geometry.value(), def, {}, {}};
-    if (!is_finite(def.local.translation))
-        return refused(ErrorCode::non_finite, call, "the collider's local position must be finite");
+    if (Status s = valid_offset(def.local.translation, "the collider's local position", call); !s) return s.error();
+    if (c.geometry.kind == GeometryKind::plane && absolute(c.geometry.offset) > world_extent)
+        return refused(ErrorCode::out_of_world, call,
+                       "Plane: offset is " + text(c.geometry.offset) + " m, must be within " + text(world_extent));
     Result<Quat> q = unit_quaternion(def.local.rotation, call);
     if (!q) return q.error();
     c.def.local.rotation = q.value();
@@ -109,8 +111,7 @@ Result<MassProperties> body_mass(const RigidBodyDef& def, const std::vector<Chec
         total = with_mass(total, *def.mass);
     }
     if (def.centre_of_mass) {
-        if (!is_finite(*def.centre_of_mass))
-            return refused(ErrorCode::non_finite, call, "centre of mass must be finite");
+        if (Status s = valid_offset(*def.centre_of_mass, "centre of mass", call); !s) return s.error();
         // The same solid on another centre: its inertia about that follows by the parallel axis theorem.
         Vec3 d = *def.centre_of_mass - total.centre;
         SymMat3& i = total.inertia;
@@ -223,19 +224,11 @@ void remove_box(WorldData& world, uint32_t collider) {
     world.box_place[collider] = no_box;
 }
 
-template <class T, class Keep>
-void keep_if(Array<T>& array, Keep&& keep) {
-    size_t kept = 0;
-    for (const T& x : array)
-        if (keep(x)) array[kept++] = x;
-    array.resize_unset(kept);
-}
-
 }  // namespace
 
 Result<BodyId> World::add_rigid_body(const RigidBodyDef& def) {
     constexpr const char* call = "add_rigid_body";
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (Status s = check_motion(def, call); !s) return s.error();
     if (Status s = valid_position(def.position, call); !s) return s.error();
     Result<Quat> q = unit_quaternion(def.orientation, call);
@@ -285,7 +278,7 @@ Result<BodyId> World::add_rigid_body(const RigidBodyDef& def) {
 
 Result<BodyId> World::add_static_body(const StaticBodyDef& def) {
     constexpr const char* call = "add_static_body";
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (Status s = valid_position(def.position, call); !s) return s.error();
     Result<Quat> q = unit_quaternion(def.orientation, call);
     if (!q) return q.error();
@@ -303,26 +296,22 @@ Result<BodyId> World::add_static_body(const StaticBodyDef& def) {
 }
 
 Status World::set_user_data(BodyId id, uint64_t user_data) {
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (!world.bodies.alive(id)) return no_such(world.bodies.slots, id.generation, "set_user_data", "body");
     world.bodies.info[id.index].user_data = user_data;
     return {};
 }
 
 Status World::remove_body(BodyId id) {
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (!world.bodies.alive(id)) return no_such(world.bodies.slots, id.generation, "remove_body", "body");
     uint32_t slot = id.index;
     wake_touching(world, slot);  // what rested on it falls
     remove_joints_of(world, slot);
     remove_mover(world, slot);
-    bool overlapped = false;
     for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot;) {
         uint32_t next = world.colliders.info[c].next;
-        world.pairs.for_each_of(c, [&](uint32_t number) {
-            overlapped |= world.pairs.pairs[number].hit;
-            forget_pair(world, number);
-        });
+        world.pairs.for_each_of(c, [&](uint32_t number) { forget_pair(world, number); });
         set_asks(world, c, Events::none);
         remove_box(world, c);
         world.colliders.shape[c] = Sphere{};  // lets go of shared hulls, meshes and height fields
@@ -337,11 +326,6 @@ Status World::remove_body(BodyId id) {
     }
     world.bodies.info[slot].first_collider = no_slot;
     if (slot < world.island_loads.size()) world.island_loads[slot] = {};
-    if (overlapped) {
-        auto others = [&](const Overlap& o) { return o.trigger_body != id && o.other_body != id; };
-        keep_if(world.overlaps, others);
-        world.resting.hits_changed = true;
-    }
     world.bodies.slots.remove(slot);
     return {};
 }

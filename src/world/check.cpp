@@ -82,7 +82,7 @@ std::string check_movers(const WorldData& w) {
 }  // namespace
 
 std::string World::check() const {
-    const WorldData& w = *data_;
+    const WorldData& w = data();
     for (uint32_t slot : w.bodies.slots.order()) {
         const BodyInfo& info = w.bodies.info[slot];
         int colliders = 0;

@@ -300,13 +300,13 @@ std::span<const T> all_of(const Array<T>& list) {
 }
 }  // namespace
 
-std::span<const ContactEvent> World::contact_begins() const { return all_of(data_->events.begins); }
-std::span<const ContactEvent> World::contact_ends() const { return all_of(data_->events.ends); }
-std::span<const ContactHit> World::contact_hits() const { return all_of(data_->events.hits); }
-std::span<const Overlap> World::trigger_begins() const { return all_of(data_->events.trigger_begins); }
-std::span<const Overlap> World::trigger_ends() const { return all_of(data_->events.trigger_ends); }
-std::span<const SleepEvent> World::sleep_events() const { return all_of(data_->events.sleeps); }
+std::span<const ContactEvent> World::contact_begins() const { return all_of(data().events.begins); }
+std::span<const ContactEvent> World::contact_ends() const { return all_of(data().events.ends); }
+std::span<const ContactHit> World::contact_hits() const { return all_of(data().events.hits); }
+std::span<const Overlap> World::trigger_begins() const { return all_of(data().events.trigger_begins); }
+std::span<const Overlap> World::trigger_ends() const { return all_of(data().events.trigger_ends); }
+std::span<const SleepEvent> World::sleep_events() const { return all_of(data().events.sleeps); }
 
-std::span<const JointBreak> World::joint_breaks() const { return all_of(data_->events.breaks); }
+std::span<const JointBreak> World::joint_breaks() const { return all_of(data().events.breaks); }
 
 }  // namespace lendulet

@@ -39,12 +39,12 @@ uint32_t nearest_of_all(const WorldData& world, const float origin[3], const flo
 int World::query_boxes(const Aabb& box, ColliderId* out, int capacity) const {
     float lower[3] = {box.lower.x, box.lower.y, box.lower.z}, upper[3] = {box.upper.x, box.upper.y, box.upper.z};
     Array<uint32_t> hits;
-    data_->broad_phase.query_box(lower, upper, hits);
+    data().broad_phase.query_box(lower, upper, hits);
     std::sort(hits.begin(), hits.end());  // order: total
     int count = 0;
     for (uint32_t slot : hits) {
-        if (!data_->colliders.info[slot].boxed) continue;
-        if (count < capacity) out[count] = data_->colliders.id(slot);
+        if (!data().colliders.info[slot].boxed) continue;
+        if (count < capacity) out[count] = data().colliders.id(slot);
         ++count;
     }
     return count;
@@ -55,15 +55,15 @@ Result<BoxHit> World::nearest_box(Position origin, Vec3 translation) const {
         return Error{ErrorCode::bad_query, "nearest_box: origin and translation must be finite"};
     if (!(length_squared(translation) > 0.0f)) return Error{ErrorCode::bad_query, "nearest_box: the ray has no length"};
     float o[3] = {origin.x, origin.y, origin.z}, d[3] = {translation.x, translation.y, translation.z}, t = 0.0f;
-    uint32_t slot = data_->broad_phase.ray(o, d, 1.0f, t);
-    if (slot != no_box && !data_->colliders.info[slot].boxed) slot = nearest_of_all(*data_, o, d, t);
+    uint32_t slot = data().broad_phase.ray(o, d, 1.0f, t);
+    if (slot != no_box && !data().colliders.info[slot].boxed) slot = nearest_of_all(data(), o, d, t);
     if (slot == no_box) return BoxHit{{}, {}, 1.0f};
-    return BoxHit{data_->bodies.id(data_->colliders.info[slot].body), data_->colliders.id(slot), t};
+    return BoxHit{data().bodies.id(data().colliders.info[slot].body), data().colliders.id(slot), t};
 }
 
 void World::visit_aabbs(void (*visit)(void*, const AabbView&), void* context) const {
     Array<BroadPhaseBox> boxes;
-    data_->broad_phase.boxes(boxes);
+    data().broad_phase.boxes(boxes);
     for (const BroadPhaseBox& b : boxes)
         visit(context, {{{b.lower[0], b.lower[1], b.lower[2]}, {b.upper[0], b.upper[1], b.upper[2]}}, b.depth, b.leaf});
 }

@@ -72,7 +72,7 @@ void expect_mesh_contacts(WorldData& world) {
 }
 
 Status World::reserve(const Capacity& capacity) {
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (world.in_step) return Error{ErrorCode::locked, "reserve: called from inside a step"};
     const int counts[3] = {capacity.bodies, capacity.contacts, capacity.joints};
     const char* const names[3] = {"bodies", "contacts", "joints"};

@@ -148,7 +148,7 @@ void finish_step(WorldData& world, float dt) {
 }
 
 Status World::update(float dt) {
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (!is_finite(dt) || dt < 0.0f)
         return Error{ErrorCode::bad_time_step, "update: dt is " + text(dt) + ", must be finite and not negative"};
     if (dt > longest_update)

@@ -1,16 +1,8 @@
 #include "world/validate.h"
 
-#include <cstdio>
-
 #include "world/world_data.h"
 
 namespace lendulet {
-
-std::string text(float value) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%g", static_cast<double>(value));
-    return buffer;
-}
 
 Result<Quat> unit_quaternion(Quat q, const char* call) {
     float size2 = dot(q, q);
@@ -24,16 +16,28 @@ Result<Quat> unit_quaternion(Quat q, const char* call) {
     return normalize(q);
 }
 
-Status valid_position(Position p, const char* call) {
-    Vec3 v = from_origin(p);
-    if (!is_finite(v)) return Error{ErrorCode::non_finite, std::string(call) + ": position must be finite"};
+namespace {
+
+Status valid_place(Vec3 v, const char* what, const char* from, const char* call) {
+    if (!is_finite(v)) return Error{ErrorCode::non_finite, std::string(call) + ": " + what + " must be finite"};
     if (max_component(absolute(v)) > world_extent)
         return Error{ErrorCode::out_of_world,
-                     std::string(call) + ": position is farther than " + text(world_extent) + " m from the origin"};
+                     std::string(call) + ": " + what + " is farther than " + text(world_extent) + " m from " + from};
     return {};
 }
 
+}  // namespace
+
+Status valid_position(Position p, const char* call) {
+    return valid_place(from_origin(p), "position", "the origin", call);
+}
+
+Status valid_offset(Vec3 offset, const char* what, const char* call) {
+    return valid_place(offset, what, "the body's own", call);
+}
+
 Error no_such(const Slots& slots, uint32_t generation, const char* call, const char* what) {
+    if (generation == 0) return {ErrorCode::stale_id, std::string(call) + ": " + what + " is a null handle"};
     if (slots.foreign(generation))
         return {ErrorCode::wrong_world, std::string(call) + ": that " + what + " belongs to another world"};
     return {ErrorCode::stale_id, std::string(call) + ": there is no such " + what + " any more"};
@@ -52,16 +56,16 @@ Result<float> coefficient(std::optional<float> given, float fallback, float most
 }  // namespace
 
 Result<Surface> make_surface(const WorldConfig& config, const Material& m, const char* call) {
-    Result<float> fixed = coefficient(m.static_friction, config.friction, 1e6f, "static friction", call);
+    Result<float> fixed = coefficient(m.static_friction, config.friction, max_friction, "static friction", call);
     if (!fixed) return fixed.error();
-    Result<float> sliding =
-        coefficient(m.dynamic_friction, m.static_friction.value_or(config.friction), 1e6f, "dynamic friction", call);
+    Result<float> sliding = coefficient(m.dynamic_friction, m.static_friction.value_or(config.friction), max_friction,
+                                        "dynamic friction", call);
     if (!sliding) return sliding.error();
     Result<float> bounce = coefficient(m.restitution, config.restitution, 1.0f, "restitution", call);
     if (!bounce) return bounce.error();
-    Result<float> rolling = coefficient(m.rolling_friction, 0.0f, 1e6f, "rolling friction", call);
+    Result<float> rolling = coefficient(m.rolling_friction, 0.0f, max_friction, "rolling friction", call);
     if (!rolling) return rolling.error();
-    Result<float> spinning = coefficient(m.spinning_friction, 0.0f, 1e6f, "spinning friction", call);
+    Result<float> spinning = coefficient(m.spinning_friction, 0.0f, max_friction, "spinning friction", call);
     if (!spinning) return spinning.error();
     Result<float> turned = coefficient(m.tangential_restitution, 0.0f, 1.0f, "tangential restitution", call);
     if (!turned) return turned.error();

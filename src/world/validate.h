@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "base/text.h"
 #include "dynamics/collider_store.h"
 #include "dynamics/slots.h"
 #include "lendulet/math.h"
@@ -11,6 +12,9 @@
 
 namespace lendulet {
 
+// Of every material.
+inline constexpr float max_friction = 1e6f;  // a coefficient, or m for rolling and spinning
+
 inline bool is_finite(float x) { return x - x == 0.0f; }
 inline bool is_finite(Vec3 v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
 
@@ -18,7 +22,9 @@ inline bool is_finite(Vec3 v) { return is_finite(v.x) && is_finite(v.y) && is_fi
 Result<Quat> unit_quaternion(Quat q, const char* call);
 // Finite and within the extent of the world.
 Status valid_position(Position p, const char* call);
-// Refusal of a handle of this generation that is not alive: removed, of another world, or never given out.
+// The same of a place in a body's frame, `what`.
+Status valid_offset(Vec3 offset, const char* what, const char* call);
+// Refusal of a handle of this generation that is not alive: null, removed, of another world, or never given out.
 Error no_such(const Slots& slots, uint32_t generation, const char* call, const char* what);
 // A material with the world's defaults, where its coefficients are in range: bad_material.
 Result<Surface> make_surface(const WorldConfig& config, const Material& material, const char* call);
@@ -26,7 +32,4 @@ Result<Surface> make_surface(const WorldConfig& config, const Material& material
 Status check_events(Events events, const char* call);
 // Of a body: finite, damping not negative.
 Status check_drag(float linear_damping, float angular_damping, float gravity_factor, const char* call);
-// Number as text for messages.
-std::string text(float value);
-
 }  // namespace lendulet

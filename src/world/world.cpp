@@ -30,6 +30,11 @@ Status check_gravity(Vec3 g, const char* call) {
     return {};
 }
 
+Status check_hit_speed(float speed, const char* call) {
+    if (speed >= 0.0f && is_finite(speed)) return {};
+    return Error{ErrorCode::bad_config, std::string(call) + ": hit speed is " + text(speed) + ", must not be negative"};
+}
+
 Status check_config(const WorldConfig& c) {
     if (Status s = check_gravity(c.gravity, "build"); !s) return s;
     if (c.solver_steps < 1 || c.solver_steps > 64)
@@ -38,16 +43,15 @@ Status check_config(const WorldConfig& c) {
         return bad_config("rigid separation speed is " + text(c.rigid_separation_speed) + ", must be positive");
     if (!(c.static_separation_speed > 0.0f) || !is_finite(c.static_separation_speed))
         return bad_config("static separation speed is " + text(c.static_separation_speed) + ", must be positive");
-    if (!(c.friction >= 0.0f) || !is_finite(c.friction))
-        return bad_config("friction is " + text(c.friction) + ", must not be negative");
+    if (!(c.friction >= 0.0f && c.friction <= max_friction))
+        return bad_config("friction is " + text(c.friction) + ", must be between 0 and " + text(max_friction));
     if (!(c.restitution >= 0.0f && c.restitution <= 1.0f))
         return bad_config("bounciness is " + text(c.restitution) + ", must be between 0 and 1");
     if (c.workers < 1 || c.workers > 64)
         return bad_config("workers are " + std::to_string(c.workers) + ", must be 1 to 64");
     if (c.width != 0 && c.width != 1 && c.width != 4 && c.width != 8 && c.width != 16)
         return bad_config("width is " + std::to_string(c.width) + ", must be 1, 4, 8 or 16");
-    if (!(c.hit_speed >= 0.0f) || !is_finite(c.hit_speed))
-        return bad_config("hit speed is " + text(c.hit_speed) + ", must not be negative");
+    if (Status s = check_hit_speed(c.hit_speed, "build"); !s) return s;
     if (c.broad_phase > BroadPhaseType::wide_tree) return bad_config("that broad phase is none");
     if (c.simplex > SimplexSolver::half_space) return bad_config("that simplex solver is none");
     if (c.integrator > Integrator::runge_kutta_4) return bad_config("that integrator is none");
@@ -139,41 +143,52 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
-bool World::alive(BodyId id) const { return data_->bodies.alive(id); }
+WorldData& World::data() const {
+    if (!data_) detail::fail({ErrorCode::stale_id, "this world was moved from"});
+    return *data_;
+}
+
+bool World::alive(BodyId id) const { return data().bodies.alive(id); }
+bool World::alive(ColliderId id) const { return data().colliders.alive(id); }
 RigidBodyRef World::get(BodyId id) {
-    if (!alive(id)) detail::fail(no_such(data_->bodies.slots, id.generation, "get", "body"));
-    if (data_->bodies.info[id.index].type == BodyType::fixed)
+    if (!alive(id)) detail::fail(no_such(data().bodies.slots, id.generation, "get", "body"));
+    if (data().bodies.info[id.index].type == BodyType::fixed)
         detail::fail({ErrorCode::stale_id, "get: that body is static; use get_static"});
-    return RigidBodyRef(*data_, id.index);
+    return RigidBodyRef(data(), id);
 }
 const RigidBodyRef World::get(BodyId id) const { return const_cast<World*>(this)->get(id); }
 StaticBodyRef World::get_static(BodyId id) const {
-    if (!alive(id)) detail::fail(no_such(data_->bodies.slots, id.generation, "get_static", "body"));
-    return StaticBodyRef(*data_, id.index);
+    if (!alive(id)) detail::fail(no_such(data().bodies.slots, id.generation, "get_static", "body"));
+    return StaticBodyRef(data(), id);
 }
 
 Status World::set_gravity(Vec3 gravity) {
     if (Status s = check_gravity(gravity, "set_gravity"); !s) return s;
-    data_->config.gravity = gravity;
-    for (uint32_t slot : data_->bodies.slots.order()) wake_body(*data_, slot);
+    data().config.gravity = gravity;
+    for (uint32_t slot : data().bodies.slots.order()) wake_body(data(), slot);
     return {};
 }
-const WorldConfig& World::config() const { return data_->config; }
-const StepStatistics& World::statistics() const { return data_->statistics; }
-double World::time() const { return data_->time; }
-uint64_t World::step_count() const { return data_->steps; }
+Status World::set_hit_speed(float speed) {
+    if (Status s = check_hit_speed(speed, "set_hit_speed"); !s) return s;
+    data().config.hit_speed = speed;
+    return {};
+}
+const WorldConfig& World::config() const { return data().config; }
+const StepStatistics& World::statistics() const { return data().statistics; }
+double World::time() const { return data().time; }
+uint64_t World::step_count() const { return data().steps; }
 
-int World::body_count() const { return data_->bodies.slots.count(); }
+int World::body_count() const { return data().bodies.slots.count(); }
 BodyId World::body(int index) const {
     if (index < 0 || index >= body_count()) return {};
-    return data_->bodies.id(data_->bodies.slots.in_order(index));
+    return data().bodies.id(data().bodies.slots.in_order(index));
 }
-int World::contact_count() const { return data_->touching.count() + data_->resting.records.count(); }
+int World::contact_count() const { return data().touching.count() + data().resting.records.count(); }
 BodyId World::body_of(ColliderId id) const {
-    return data_->colliders.alive(id) ? data_->bodies.id(data_->colliders.info[id.index].body) : BodyId{};
+    return data().colliders.alive(id) ? data().bodies.id(data().colliders.info[id.index].body) : BodyId{};
 }
 std::vector<int> World::contact_colours() const {
-    const WorldData& world = *data_;
+    const WorldData& world = data();
     std::vector<int> by_record(world.records.size(), -1);
     // Parts with other numbers of substeps are solved one after the other, each with colours of its own.
     int first = 0;
@@ -190,7 +205,7 @@ std::vector<int> World::contact_colours() const {
 }
 
 int64_t World::island(BodyId id) const {
-    const WorldData& world = *data_;
+    const WorldData& world = data();
     if (!alive(id)) return -1;
     const BodyInfo& info = world.bodies.info[id.index];
     uint32_t slot = id.index;
@@ -199,11 +214,11 @@ int64_t World::island(BodyId id) const {
     return slot;
 }
 
-std::span<const Overlap> World::overlaps() const { return {data_->overlaps.data(), data_->overlaps.size()}; }
-std::span<const std::string> World::warnings() const { return data_->warnings; }
+std::span<const Overlap> World::overlaps() const { return {data().overlaps.data(), data().overlaps.size()}; }
+std::span<const std::string> World::warnings() const { return data().warnings; }
 
 Contact World::contact(int index) const {
-    const WorldData& world = *data_;
+    const WorldData& world = data();
     if (index < 0 || index >= contact_count()) return Contact{};
     const auto i = static_cast<size_t>(index), awake = world.touching.size();
     const ContactRecord& r = world.records[i < awake ? world.touching[i] : world.resting.records[i - awake]];
@@ -231,34 +246,34 @@ Contact World::contact(int index) const {
 
 double World::kinetic_energy() const {
     double sum = 0.0;
-    for (uint32_t slot : data_->bodies.slots.order())
-        if (data_->bodies.info[slot].type == BodyType::dynamic) {
-            const BodyMomenta& m = data_->bodies.momenta[slot];
-            sum += 0.5 * (static_cast<double>(dot(m.p, data_->bodies.velocity(slot))) +
-                          dot(m.L, data_->bodies.angular_velocity(slot)));
+    for (uint32_t slot : data().bodies.slots.order())
+        if (data().bodies.info[slot].type == BodyType::dynamic) {
+            const BodyMomenta& m = data().bodies.momenta[slot];
+            sum += 0.5 * (static_cast<double>(dot(m.p, data().bodies.velocity(slot))) +
+                          dot(m.L, data().bodies.angular_velocity(slot)));
         }
     return sum;
 }
 
 double World::potential_energy() const {
     double sum = 0.0;
-    const Vec3 g = data_->config.gravity;
-    for (uint32_t slot : data_->bodies.slots.order()) {
-        const BodyInfo& info = data_->bodies.info[slot];
+    const Vec3 g = data().config.gravity;
+    for (uint32_t slot : data().bodies.slots.order()) {
+        const BodyInfo& info = data().bodies.info[slot];
         if (info.type != BodyType::dynamic) continue;
-        Position x = data_->bodies.pose[slot].position;
+        Position x = data().bodies.pose[slot].position;
         double along = static_cast<double>(g.x) * x.x + static_cast<double>(g.y) * x.y + static_cast<double>(g.z) * x.z;
-        sum -= static_cast<double>(data_->bodies.mass[slot].mass) * info.gravity_factor * along;
+        sum -= static_cast<double>(data().bodies.mass[slot].mass) * info.gravity_factor * along;
     }
     return sum;
 }
 
 Momentum World::momentum() const {
     Momentum total{};
-    for (uint32_t slot : data_->bodies.slots.order()) {
-        if (data_->bodies.info[slot].type != BodyType::dynamic) continue;
-        const BodyMomenta& m = data_->bodies.momenta[slot];
-        Position at = data_->bodies.pose[slot].position;
+    for (uint32_t slot : data().bodies.slots.order()) {
+        if (data().bodies.info[slot].type != BodyType::dynamic) continue;
+        const BodyMomenta& m = data().bodies.momenta[slot];
+        Position at = data().bodies.pose[slot].position;
         double x[3] = {at.x, at.y, at.z}, p[3] = {m.p.x, m.p.y, m.p.z}, L[3] = {m.L.x, m.L.y, m.L.z};
         for (int i = 0; i < 3; ++i) {
             int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -270,7 +285,7 @@ Momentum World::momentum() const {
 }
 
 uint64_t World::hash() const {
-    const WorldData& world = *data_;
+    const WorldData& world = data();
     uint64_t h = hash_combine(0, world.bodies.slots.order().size());
     for (uint32_t slot : world.bodies.slots.order()) {
         const Pose& pose = world.bodies.pose[slot];

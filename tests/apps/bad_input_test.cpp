@@ -39,11 +39,11 @@ TEST(BadInput, CommandsAndOptions) {
     expect_refused({"run", "stack", "--dt", "2"}, "at most 1 s");
     expect_refused({"run", "stack", "--seconds=-1"}, "--seconds must not be negative");
     expect_refused({"run", "stack", "--seconds", "1e30"}, "steps");
-    expect_refused({"run", "stack", "--threads", "0"}, "");
-    expect_refused({"run", "stack", "--threads", "1000"}, "");
+    expect_refused({"run", "stack", "--threads", "0"}, "--threads");
+    expect_refused({"run", "stack", "--threads", "65"}, "--threads");
     expect_refused({"run", "stack", "--threads", "two"}, "--threads");
-    expect_refused({"run", "stack", "--solver-steps", "0"}, "");
-    expect_refused({"run", "stack", "--solver-steps", "65"}, "");
+    expect_refused({"run", "stack", "--solver-steps", "0"}, "--solver-steps");
+    expect_refused({"run", "stack", "--solver-steps", "65"}, "--solver-steps");
     expect_refused({"run", "stack", "--width", "3"}, "--width");
     expect_refused({"run", "stack", "--width", "0"}, "--width");
     expect_refused({"run", "stack", "--broad-phase", "magic"}, "magic");
@@ -52,9 +52,24 @@ TEST(BadInput, CommandsAndOptions) {
     expect_refused({"run", "stack", "--integrator", "magic"}, "magic");
     expect_refused({"run", "stack", "--json", "/no/such/directory/x"}, "/no/such/directory/x: cannot be written");
     expect_refused({"run", "stack", "--record", "/no/such/directory/x"}, "/no/such/directory/x: cannot be written");
-    expect_refused({"run", "scenes/files/motion.gltf", "--threads", "0"}, "");
+    expect_refused({"run", "stack", "--json", ""}, "--json must not be empty");
+    expect_refused({"run", "stack", "--record", ""}, "--record must not be empty");
+    expect_refused({"run", "scenes/files/motion.gltf", "--threads", "0"}, "--threads");
     expect_refused({"bench"}, "broad-phase, scenes and collision");
     expect_refused({"bench", "everything"}, "\"everything\" is no benchmark; there are broad-phase");
+}
+
+// Each output is a file of its own, and what is refused leaves none.
+TEST(BadInput, OutputsOfARun) {
+    const std::string out = scratch("refused.out"),
+                      scene = file_with("scene.gltf", "{\"asset\": {\"version\": \"2.0\"}}");
+    expect_refused({"run", "stack", "--json", out, "--record", "/no/such/directory/x"}, "/no/such/directory/x");
+    EXPECT_FALSE(std::filesystem::exists(out));
+    expect_refused({"run", "stack", "--json", out, "--record", scratch("./refused.out")}, "name the same file");
+    EXPECT_FALSE(std::filesystem::exists(out));
+    for (const char* option : {"--json", "--record"})
+        expect_refused({"run", scene, option, scene}, "over the scene that is read");
+    EXPECT_EQ(content(scene), "{\"asset\": {\"version\": \"2.0\"}}");
 }
 
 TEST(BadInput, Verify) {

@@ -71,7 +71,7 @@ TEST(Bench, BadSceneOptionsAreOneSentence) {
     expect_bench_refuses({"scenes", "--scenes="}, "--scenes");
     expect_bench_refuses({"scenes", "--threads", "0"}, "--threads must be whole numbers from 1 to 64");
     expect_bench_refuses({"scenes", "--threads", "1,65"}, "--threads");
-    expect_bench_refuses({"scenes", "--steps", "0"}, "--steps");
+    expect_bench_refuses({"scenes", "--steps", "0"}, "--steps: Value 0 not in range 1 to 100000");
     expect_bench_refuses({"scenes", "--repeats", "101"}, "--repeats must be 1 to 100");
     expect_bench_refuses({"scenes", "--against", "everyone"}, "there are bullet, none");
     expect_bench_refuses({"scenes", "--csv", "/no/such/directory/x"}, "/no/such/directory/x");

@@ -34,7 +34,7 @@ std::string scratch(const std::string& name) {
     return (directory.path / name).string();
 }
 
-Outcome lendulet(const std::vector<std::string>& arguments, int interrupt_after_ms) {
+Outcome lendulet(const std::vector<std::string>& arguments, int interrupt_after_ms, size_t most_bytes) {
     std::string out_path = scratch("stdout"), err_path = scratch("stderr");
     std::vector<char*> argv{const_cast<char*>(LENDULET_CLI_PATH)};
     for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
@@ -45,6 +45,8 @@ Outcome lendulet(const std::vector<std::string>& arguments, int interrupt_after_
         int out = open(out_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
         int err = open(err_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
         dup2(in, 0), dup2(out, 1), dup2(err, 2);
+        const rlimit limit{most_bytes, most_bytes};
+        if (most_bytes > 0) setrlimit(RLIMIT_AS, &limit);
         execv(argv[0], argv.data());
         _exit(127);
     }

@@ -1,6 +1,7 @@
 // Runs the real program, as a user would, and catches what it says.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,8 @@ struct Outcome {
 };
 
 // Runs `lendulet` with these arguments in the repository's root. Where `interrupt_after_ms` is not negative, sends it
-// an interrupt (as Ctrl-C does) that much later.
-Outcome lendulet(const std::vector<std::string>& arguments, int interrupt_after_ms = -1);
+// an interrupt (as Ctrl-C does) that much later. `most_bytes`: of memory that it gets, 0: as much as there is.
+Outcome lendulet(const std::vector<std::string>& arguments, int interrupt_after_ms = -1, size_t most_bytes = 0);
 
 // A path in a directory of this process' own, which is removed at its end.
 std::string scratch(const std::string& name);

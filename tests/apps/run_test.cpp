@@ -122,6 +122,41 @@ TEST(Run, InterruptEndsWithTheSummary) {
     EXPECT_LT(json["steps"], 6000000);
 }
 
+// Also where it comes before the first step, and of the run of a repro file, whose bits are then not compared.
+TEST(Run, InterruptEndsEveryRunWithTheSummary) {
+    Outcome early = lendulet({"run", "box_pile:200000", "--seconds", "1000", "--quiet"}, 400);
+    EXPECT_EQ(early.exit_code, 0) << early.err;
+    const std::string file = scratch("long.json");
+    std::ofstream(file) << R"({"lendulet": "repro", "version": 1, "scene": "stack:5", "steps": 100000000,
+                               "hash": "0000000000000000", "deeds": []})";
+    Outcome replay = lendulet({"run", file, "--json", "-"}, 400);
+    EXPECT_EQ(replay.exit_code, 2);
+    EXPECT_NE(replay.err.find("ended early"), std::string::npos) << replay.err;
+    EXPECT_LT(Json::parse(replay.out)["steps"], 100000000);
+}
+
+#if defined(__has_feature)
+#define LENDULET_HAS_FEATURE(x) __has_feature(x)
+#else
+#define LENDULET_HAS_FEATURE(x) 0
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || LENDULET_HAS_FEATURE(address_sanitizer) || \
+    LENDULET_HAS_FEATURE(thread_sanitizer)
+constexpr bool takes_address_space = true;
+#else
+constexpr bool takes_address_space = false;
+#endif
+
+// Of memory for the scene, and of what the core asks for within a step.
+TEST(Run, WithoutMemoryEndsWithASentence) {
+    if (takes_address_space) GTEST_SKIP() << "sanitizers take more of it than a limit could leave";
+    for (size_t megabytes : {60, 100}) {
+        Outcome outcome = lendulet({"run", "box_pile:100000", "--seconds", "1", "--quiet"}, -1, megabytes << 20);
+        EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+        EXPECT_EQ(outcome.err.rfind("lendulet: out of memory", 0), 0u) << outcome.err;
+    }
+}
+
 TEST(Program, HelpVersionAndScenes) {
     Outcome help = lendulet({"run", "--help"});
     EXPECT_EQ(help.exit_code, 0);
@@ -191,10 +226,16 @@ TEST(Run, ReproFileHasTheBitsThatWereSaved) {
     repro["steps"] = -1, refused("steps");
     repro["scene"] = "no_such_scene", refused("no_such_scene");
     repro["gltf"] = "AAAA", refused("glTF");
-    repro["deeds"][1]["step"] = 95, refused("not in order");
+    repro["deeds"][1]["step"] = 70, refused("not in order");
     repro["deeds"][0]["command"]["do"] = "explode", refused("explode");
     repro["deeds"] = 3, refused("deeds");
+    repro["steps"] = 89, refused("after its last step");
+    repro["scene"] = "other.json", refused("its scene is a repro file itself");
+    write();
     expect_refused({"run", file, "--record", scratch("no.rec")}, "--record");
+    expect_refused({"run", file, "--seconds", "1"}, "--seconds");
+    expect_refused({"run", file, "--dt", "1/60"}, "--dt");
+    expect_refused({"run", file, "--json", file}, "over the scene that is read");
     std::ofstream(file) << "{";
     expect_refused({"run", file}, "not JSON");
 }

@@ -67,5 +67,12 @@ TEST(Arrays, RoomTakenAheadHoldsWhatWasThere) {
     for (uint64_t i = 0; i < 50'000; ++i) ASSERT_EQ(array[i], i * i);
 }
 
+TEST(Arrays, ThatGetNoMemoryEndTheProgramWithASentence) {
+    const Memory none{nullptr, [](void*, size_t, size_t) -> void* { return nullptr; },
+                      [](void*, void*, size_t, size_t) {}};
+    Array<int> array(&none);
+    EXPECT_EXIT(array.push_back(1), ::testing::ExitedWithCode(2), "lendulet: out of memory .* bytes");
+}
+
 }  // namespace
 }  // namespace lendulet::test

@@ -10,7 +10,7 @@ namespace lendulet::test {
 namespace {
 
 TEST(Api, HelloWorldBouncesAndSettles) {
-    World world = WorldBuilder{}.down_gravity(9.81f).solver_steps(4).friction(0.5f).build().value();
+    World world = WorldBuilder{}.down_gravity(9.81f).friction(0.5f).build().value();
     world.add_static_body({.shape = Box{{10, 0.5f, 10}}, .position = {0, -0.5f, 0}}).value();
     BodyId ball =
         world.add_rigid_body({.shape = Sphere{1}, .position = {0, 10, 0}, .density = 500, .restitution = 0.9f}).value();
@@ -48,7 +48,47 @@ TEST(ApiDeathTest, ValueOfAnErrorEndsTheProgramWithItsSentence) {
     World world = WorldBuilder{}.build().value();
     EXPECT_EXIT(world.add_rigid_body({.shape = Sphere{-1.0f}}).value(), ::testing::ExitedWithCode(2),
                 "add_rigid_body.*radius");
-    EXPECT_EXIT(world.get(BodyId{}), ::testing::ExitedWithCode(2), "get: .*no such body");
+    EXPECT_EXIT(world.get(BodyId{}), ::testing::ExitedWithCode(2), "get: body is a null handle");
+}
+
+// A view knows its body: after its removal it neither reads nor writes the one that took its place.
+TEST(ApiDeathTest, ViewsOfRemovedBodiesEndTheProgram) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    World world = WorldBuilder{}.no_gravity().build().value();
+    const BodyId first = world.add_rigid_body({}).value();
+    RigidBodyRef view = world.get(first);
+    world.remove_body(first).value();
+    const BodyId second = world.add_rigid_body({}).value();
+    ASSERT_EQ(second.index, first.index);
+    EXPECT_EQ(view.id(), first) << "its id may be asked for, to see whether it is alive";
+    EXPECT_EXIT(view.set_velocity({7.0f, 0.0f, 0.0f}).value(), ::testing::ExitedWithCode(2),
+                "a view: there is no such body any more");
+    EXPECT_EXIT(static_cast<void>(view.position()), ::testing::ExitedWithCode(2), "no such body");
+    EXPECT_EXIT(view.set_bullet(true), ::testing::ExitedWithCode(2), "no such body");
+}
+
+TEST(ApiDeathTest, CollidersThatABodyHasNotEndTheProgram) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    World world = WorldBuilder{}.build().value();
+    const ColliderDef two[] = {{.shape = Box{}}, {.shape = Sphere{}}};
+    const BodyId id = world.add_rigid_body({.colliders = two}).value();
+    const RigidBodyRef body = world.get(id);
+    EXPECT_EQ(world.body_of(body.collider(1)), id);
+    EXPECT_NE(body.collider(1), body.collider(0));
+    for (int none : {-1, 2, 7}) {
+        EXPECT_FALSE(body.collider(none));
+        EXPECT_EXIT(static_cast<void>(body.shape(none)), ::testing::ExitedWithCode(2), "shape: the body has no coll");
+        EXPECT_EXIT(static_cast<void>(body.is_trigger(none)), ::testing::ExitedWithCode(2), "it has 2");
+    }
+}
+
+TEST(ApiDeathTest, WorldsThatWereMovedFromEndTheProgram) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    World first = WorldBuilder{}.build().value();
+    const World second = std::move(first);
+    EXPECT_EXIT(first.update(dt).value(), ::testing::ExitedWithCode(2), "this world was moved from");
+    EXPECT_EXIT(static_cast<void>(first.body_count()), ::testing::ExitedWithCode(2), "this world was moved from");
+    EXPECT_EXIT(static_cast<void>(first.hash()), ::testing::ExitedWithCode(2), "this world was moved from");
 }
 
 TEST(Api, WorldsMove) {
@@ -69,6 +109,14 @@ TEST(Ids, NullAndForeignIndicesAreNotAlive) {
     EXPECT_FALSE(world.alive(BodyId{7, 1}));
     EXPECT_FALSE(world.alive(BodyId{~0u, 1}));
     EXPECT_FALSE(world.alive(JointId{}));
+    EXPECT_FALSE(world.alive(ColliderId{}));
+    EXPECT_FALSE(world.alive(ColliderId{99, 1}));
+    const BodyId cube = add_cube(world, 0.0f, 0);
+    const ColliderId collider = world.get(cube).collider();
+    EXPECT_TRUE(world.alive(collider));
+    EXPECT_FALSE(WorldBuilder{}.build().value().alive(collider));
+    world.remove_body(cube).value();
+    EXPECT_FALSE(world.alive(collider));
     EXPECT_EQ(world.body_of(ColliderId{}), BodyId{});
     EXPECT_EQ(world.body_of(ColliderId{99, 1}), BodyId{});
     EXPECT_EQ(world.body(-1), BodyId{});

@@ -146,7 +146,37 @@ TEST(Triggers, ReportOverlapsAndDoNotPush) {
     run(world, 1);
     ASSERT_EQ(world.overlaps().size(), 1u);
     world.remove_body(ball).value();
-    EXPECT_TRUE(world.overlaps().empty()) << "an overlap must not name a body that is gone";
+    ASSERT_EQ(world.overlaps().size(), 1u) << "the list is that of the last step";
+    EXPECT_FALSE(world.alive(world.overlaps()[0].other_body));
+    run(world, 1);
+    EXPECT_TRUE(world.overlaps().empty());
+}
+
+// The list of overlaps may be gone through while what it names is removed or filtered out, awake and at rest.
+TEST(Triggers, TheListStaysWhileItIsRead) {
+    for (bool resting : {false, true}) {
+        World world = WorldBuilder{}.no_gravity().build().value();
+        const ColliderDef zone[] = {{.shape = Box{{5.0f, 5.0f, 5.0f}}, .is_trigger = true}};
+        world.add_static_body({.colliders = zone}).value();
+        for (int i = 0; i < 10; ++i) {
+            const float x = 0.5f * static_cast<float>(i) - 2.5f;
+            world.add_rigid_body({.shape = Sphere{0.1f}, .position = {x, 0.0f, 0.0f}}).value();
+        }
+        run(world, resting ? 60 : 1);
+        ASSERT_EQ(world.overlaps().size(), 10u);
+        int seen = 0;
+        for (const Overlap& o : world.overlaps()) {
+            const bool removes = ++seen % 2 == 0;
+            if (removes) world.remove_body(o.other_body).value();
+            else world.set_filter(o.other, {.mask = 0}).value();
+        }
+        EXPECT_EQ(seen, 10);
+        EXPECT_EQ(world.overlaps().size(), 10u);
+        EXPECT_EQ(world.body_count(), 6);
+        EXPECT_EQ(world.check(), "");
+        run(world, 1);
+        EXPECT_TRUE(world.overlaps().empty());
+    }
 }
 
 class Queries : public ::testing::TestWithParam<BroadPhaseType> {};

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "world/support.h"
@@ -304,16 +306,22 @@ TEST(Events, EitherColliderAsks) {
 
 TEST(Events, HitSpeedIsASetting) {
     const float speed = std::sqrt(2.0f * 9.81f);
-    for (float least : {0.0f, 0.98f * speed, 1.02f * speed}) {
-        World world = WorldBuilder().hit_speed(least).build().value();
-        add_floor(world);
-        add_ball(world, {0.0f, 1.5f, 0.0f});
-        size_t hits = 0;
-        for (int i = 0; i < 60; ++i) run(world, 1), hits += world.contact_hits().size();
-        EXPECT_EQ(hits, least < speed ? 1u : 0u) << least;
-    }
+    for (bool later : {false, true})
+        for (float least : {0.0f, 0.98f * speed, 1.02f * speed}) {
+            World world = WorldBuilder().hit_speed(later ? 100.0f : least).build().value();
+            if (later) world.set_hit_speed(least).value();
+            add_floor(world);
+            add_ball(world, {0.0f, 1.5f, 0.0f});
+            size_t hits = 0;
+            for (int i = 0; i < 60; ++i) run(world, 1), hits += world.contact_hits().size();
+            EXPECT_EQ(hits, least < speed ? 1u : 0u) << least;
+        }
     EXPECT_EQ(WorldBuilder().hit_speed(-1.0f).build().error().code, ErrorCode::bad_config);
     EXPECT_EQ(WorldBuilder().hit_speed(std::nanf("")).build().error().code, ErrorCode::bad_config);
+    World world = WorldBuilder().build().value();
+    for (float bad : {-1.0f, std::nanf(""), std::numeric_limits<float>::infinity()})
+        EXPECT_EQ(world.set_hit_speed(bad).error().code, ErrorCode::bad_config);
+    EXPECT_EQ(world.config().hit_speed, 1.0f);
 }
 
 TEST(Events, TriggersTellWhoComesAndGoes) {

@@ -2,6 +2,7 @@
 // docs/integrators.md come from here: run with LENDULET_INTEGRATOR_TABLE=1 to print them.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -180,6 +181,35 @@ TEST(Integrators, ContactsAreSolvedWithEveryOne) {
     for (uint64_t hash : hashes) EXPECT_EQ(hash, hashes[0]);
 }
 
+// Largest distance in the fifth second of a ball on a spring that the program itself computes, from 1 m.
+float spring_amplitude(float hertz, float damping_ratio, bool by_impulse) {
+    World world = WorldBuilder{}.no_gravity().build().value();
+    const BodyId ball = world.add_rigid_body({.shape = Sphere{}, .position = {1.0f, 0.0f, 0.0f}, .mass = 1.0f}).value();
+    const float omega = 2.0f * pi * hertz;
+    float largest = 0.0f;
+    for (int i = 0; i < 300; ++i) {
+        RigidBodyRef body = world.get(ball);
+        const Vec3 away = from_origin(body.position());
+        const Vec3 force = -omega * omega * away - 2.0f * damping_ratio * omega * body.velocity();
+        if (by_impulse) body.apply_impulse(dt * force).value();
+        else body.apply_force(force).value();
+        world.update(dt).value();
+        if (i > 240) largest = maximum(largest, absolute(body.position().x));
+    }
+    return largest;
+}
+
+TEST(Integrators, SpringsOfTheProgramKeepTheirEnergyAsImpulses) {
+    for (float hertz : {0.5f, 1.0f, 2.0f, 4.0f}) {
+        EXPECT_NEAR(spring_amplitude(hertz, 0.0f, true), 1.0f, 0.03f) << hertz;
+        if (hertz > 2.0f) continue;  // the limit on speed would end the growth
+        const float turned = 2.0f * pi * hertz * dt, growth = std::pow(1.0f + 0.5f * turned * turned, 0.5f * 300.0f);
+        const float by_force = spring_amplitude(hertz, 0.0f, false);
+        EXPECT_GT(by_force, 0.8f * growth) << hertz;
+        EXPECT_LT(by_force, 1.1f * growth) << hertz;
+    }
+}
+
 void print_row(const char* name, const Errors& e) {
     std::printf("| %s |", name);
     for (double v : e.value) std::printf(" %.2g |", v);
@@ -198,6 +228,13 @@ TEST(Integrators, Table) {
                   over_rates([i](int r) { return tumble(i, r, 10.0f).worst_energy_drift; }));
         print_row((name + ", L after 10 s").c_str(),
                   over_rates([i](int r) { return tumble(i, r, 10.0f).momentum_drift; }));
+    }
+    for (float hertz : {0.5f, 1.0f, 2.0f, 4.0f}) {
+        std::printf("| spring of %g Hz |", static_cast<double>(hertz));
+        for (bool by_impulse : {false, true})
+            std::printf(" %.3g (%.2g) |", static_cast<double>(spring_amplitude(hertz, 0.0f, by_impulse)),
+                        static_cast<double>(spring_amplitude(hertz, 0.05f, by_impulse)));
+        std::printf("\n");
     }
 }
 

@@ -1,6 +1,7 @@
 // Bad input is refused with the right kind of error and changes nothing; extreme input does no harm to others.
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <functional>
 #include <limits>
 #include <string>
@@ -171,6 +172,12 @@ const Refusal motion_refusals[] = {
 
 RigidBodyDef sized(Shape shape) { return {.shape = std::move(shape), .position = {0.0f, 5.0f, 0.0f}}; }
 
+RigidBodyDef with_collider(const ColliderDef& collider) {
+    static std::deque<ColliderDef> kept;  // definitions hold spans
+    kept.push_back(collider);
+    return {.position = {0.0f, 5.0f, 0.0f}, .colliders = {&kept.back(), 1}};
+}
+
 const Refusal body_refusals[] = {
     {"mass_zero", bad_mass, adding(with_mass(0.0f))},
     {"mass_negative", bad_mass, adding(with_mass(-1.0f))},
@@ -196,6 +203,10 @@ const Refusal body_refusals[] = {
     {"mesh_unbuilt", bad_mesh, adding(StaticBodyDef{.shape = TriangleMesh{}})},
     {"plane_moves", shape_not_dynamic, adding(sized(Plane{}))},
     {"flat_mesh_moves", shape_not_dynamic, adding(sized(wavy_ground(2, 1.0f, 0.0f)))},
+    {"plane_far", out_of_world, adding(StaticBodyDef{.shape = Plane{{0.0f, 2.0f, 0.0f}, 4e7f}})},
+    {"local_position_far", out_of_world, adding(with_collider({.local = {{1e20f, 0.0f, 0.0f}, {}}}))},
+    {"local_position_nan", non_finite, adding(with_collider({.local = {{nan, 0.0f, 0.0f}, {}}}))},
+    {"centre_of_mass_far", out_of_world, adding(RigidBodyDef{.centre_of_mass = Vec3{0.0f, 1e20f, 0.0f}})},
     {"friction_negative", bad_material, adding(RigidBodyDef{.friction = -0.1f})},
     {"friction_nan", bad_material, adding(StaticBodyDef{.friction = nan})},
     {"dynamic_friction_negative", bad_material, adding(RigidBodyDef{.dynamic_friction = -1.0f})},
@@ -217,9 +228,7 @@ const Refusal body_refusals[] = {
     {"joint_axis_zero", bad_joint,
      [](Refusing& s) { return status(s.world.joint_at(JointType::hinge, s.floor, s.cube, {}, {})); }},
     {"joint_axis_nan", non_finite,
-     [](Refusing& s) {
-         return status(s.world.joint_at(JointType::hinge, s.floor, s.cube, {}, {nan, 0.0f, 0.0f}));
-     }},
+     [](Refusing& s) { return status(s.world.joint_at(JointType::hinge, s.floor, s.cube, {}, {nan, 0.0f, 0.0f})); }},
     {"joint_limit_reversed", bad_joint, joining([](JointDef& d) {
          d.limit = {0.5f, -0.5f};
      })},
@@ -228,11 +237,24 @@ const Refusal body_refusals[] = {
      })},
     {"joint_frame_nan", non_finite, joining([](JointDef& d) { d.frame_a.translation.x = nan; })},
     {"joint_frame_not_unit", bad_rotation, joining([](JointDef& d) { d.frame_b.rotation.w = 3.0f; })},
+    {"joint_frame_far", bad_joint, joining([](JointDef& d) { d.frame_b.translation.y = -1e30f; })},
+    {"joint_limit_far", bad_joint, joining([](JointDef& d) {
+         d.type = JointType::distance, d.limit = {1e9f, 1e9f};
+     })},
+    {"joint_travel_far", bad_joint, joining([](JointDef& d) {
+         d.type = JointType::slider, d.limit = {-1e9f, -1e8f};
+     })},
+    {"spring_turns_too_far", bad_joint, joining([](JointDef& d) { d.spring = {.stiffness = 1.0f, .target = 100.0f}; })},
+    {"set_spring_turns_too_far", bad_joint,
+     [](Refusing& s) { return s.world.set_spring(s.joint, {.stiffness = 1.0f, .target = -6.3f}); }},
+    {"spring_pulls_out_of_the_world", bad_joint, joining([](JointDef& d) {
+         d.type = JointType::six_degrees, d.axes.linear[2].spring = {.stiffness = 1.0f, .target = 1e8f};
+     })},
+    {"spring_of_swing_too_far", bad_joint, joining([](JointDef& d) {
+         d.type = JointType::six_degrees, d.axes.angular[1].spring = {.stiffness = 1.0f, .target = 7.0f};
+     })},
     {"motor_negative", bad_joint, joining([](JointDef& d) { d.motor.max_force = -1.0f; })},
-    {"set_motor_nan", non_finite,
-     [](Refusing& s) {
-         return s.world.set_motor(s.joint, {nan, 1.0f});
-     }},
+    {"set_motor_nan", non_finite, [](Refusing& s) { return s.world.set_motor(s.joint, {nan, 1.0f}); }},
 };
 
 auto name_of_case = [](const auto& info) { return std::string(info.param.name); };
@@ -270,6 +292,7 @@ TEST(Refusals, OfSettings) {
         EXPECT_EQ(code(WorldBuilder{}.static_separation_speed(speed)), bad_config);
     }
     EXPECT_EQ(code(WorldBuilder{}.friction(-1.0f)), bad_config);
+    EXPECT_EQ(code(WorldBuilder{}.friction(1.1e6f)), bad_config) << "no body would be taken";
     EXPECT_EQ(code(WorldBuilder{}.bounciness(1.5f)), bad_config);
     EXPECT_EQ(code(WorldBuilder{}.workers(0)), bad_config);
     EXPECT_EQ(code(WorldBuilder{}.width(3)), bad_config);
@@ -277,6 +300,31 @@ TEST(Refusals, OfSettings) {
     EXPECT_EQ(code(WorldBuilder{}.simplex(static_cast<SimplexSolver>(99))), bad_config);
     EXPECT_EQ(code(WorldBuilder{}.integrator(static_cast<Integrator>(99))), bad_config);
     EXPECT_EQ(code(WorldBuilder{}.gravity({0.0f, -1e6f, 0.0f})), io) << "strong gravity is allowed";
+}
+
+// Messages tell what was wrong, however small, large or far it is.
+TEST(Refusals, NameWhatIsWrong) {
+    Refusing s;
+    auto says = [](const Status& status) { return status ? std::string("nothing") : status.error().message; };
+    EXPECT_NE(says(adding(sized(Sphere{1e-30f}))(s)).find("is 1e-30."), std::string::npos);
+    EXPECT_NE(says(adding(sized(Sphere{-1.0f}))(s)).find("is -1."), std::string::npos);
+    EXPECT_NE(says(adding(sized(Sphere{3e33f}))(s)).find("is 3e+33."), std::string::npos);
+    EXPECT_NE(says(adding(with_collider({.local = {{1e20f, 0.0f, 0.0f}, {}}}))(s)).find("local position is farther"),
+              std::string::npos);
+    EXPECT_EQ(says(s.world.remove_body({})), "remove_body: body is a null handle");
+    EXPECT_EQ(says(s.world.remove_body(s.gone)), "remove_body: there is no such body any more");
+    EXPECT_EQ(says(status(s.world.joint_at(JointType::ball, {}, s.cube, {}))), "joint_at: body A is a null handle");
+}
+
+// What is as far as a world lets it be is not refused, nor are bounds that bind nothing.
+TEST(Refusals, StopAtTheEndOfTheWorld) {
+    Refusing s;
+    EXPECT_TRUE(joining([](JointDef& d) { d.frame_a.translation.x = 2e7f; })(s));
+    EXPECT_TRUE(joining([](JointDef& d) { d.type = JointType::distance, d.limit = {0.0f, 3e38f}; })(s));
+    EXPECT_TRUE(joining([](JointDef& d) { d.type = JointType::slider, d.limit = {-infinity, 2e7f}; })(s));
+    EXPECT_TRUE(joining([](JointDef& d) { d.spring = {.stiffness = 1.0f, .target = 6.28f}; })(s));
+    EXPECT_TRUE(adding(StaticBodyDef{.shape = Plane{{0.0f, 1.0f, 0.0f}, -1e7f}})(s));
+    EXPECT_TRUE(WorldBuilder{}.friction(1e6f).build().value().add_rigid_body({}));
 }
 
 }  // namespace

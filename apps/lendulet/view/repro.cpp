@@ -22,6 +22,7 @@ Repro parse(const Json& json) {
         const Asked members{deed};
         const int step = members.whole("step", most_steps);
         if (step < last) throw Asked::Refused{"holds deeds that are not in order"};
+        if (step > repro.steps) throw Asked::Refused{"holds a deed that comes after its last step"};
         repro.deeds.push_back({last = step, members.object("command")});
     }
     return repro;

@@ -6,6 +6,8 @@ namespace lendulet {
 namespace {
 
 constexpr float turn = 2.0f * pi;
+// m: no two places of a world are farther apart than its corners are, 2 sqrt(3) world_extent.
+constexpr float most_apart = 4.0f * world_extent;
 
 Error bad_joint(const char* call, std::string what) {
     return refused_joint(ErrorCode::bad_joint, call, std::move(what));
@@ -21,6 +23,9 @@ Status check_limit(const Limit& limit, const std::string& name, float most, cons
                          name + ": lower bound " + text(limit.lower) + " is above upper bound " + text(limit.upper));
     }
     if (limit.locked() && !is_finite(limit.lower)) return bad_joint(call, name + ": cannot be locked at infinity");
+    if (most == 0.0f && (limit.lower > most_apart || limit.upper < -most_apart))
+        return bad_joint(call, name + ": from " + text(limit.lower) + " to " + text(limit.upper) +
+                                   " m is beyond the world, which is at most " + text(most_apart) + " m across");
     if (most > 0.0f &&
         (limit.upper - limit.lower > most || absolute(limit.lower) > turn || absolute(limit.upper) > turn))
         return bad_joint(call, name + ": bounds must lie within one turn of 0 and of each other");
@@ -37,7 +42,7 @@ Status check_size(const Limit& limit, const std::string& name, const char* call)
 Status check_axis(const JointAxis& axis, const std::string& name, float most, const char* call) {
     if (Status s = check_limit(axis.limit, "limit " + name, most, call); !s) return s;
     if (Status s = check_motor(axis.motor, call); !s) return s;
-    if (Status s = check_spring(axis.spring, call); !s) return s;
+    if (Status s = check_spring(axis.spring, most > 0.0f, call); !s) return s;
     if (!is_finite(axis.limit_stiffness) || !is_finite(axis.limit_damping))
         return refused_joint(ErrorCode::non_finite, call, "limit " + name + ": stiffness and damping must be numbers");
     if (axis.limit_stiffness < 0.0f || axis.limit_damping < 0.0f)
@@ -90,6 +95,8 @@ Status check_bodies(const WorldData& world, BodyId a, BodyId b, const char* call
 Result<Transform> check_frame(const Transform& frame, const char* name, const char* call) {
     if (!is_finite(frame.translation))
         return refused_joint(ErrorCode::non_finite, call, std::string(name) + " must be finite");
+    if (max_component(absolute(frame.translation)) > most_apart)
+        return bad_joint(call, std::string(name) + " is farther than " + text(most_apart) + " m from its body");
     Result<Quat> q = unit_quaternion(frame.rotation, call);
     if (!q) return q.error();
     return Transform{frame.translation, q.value()};
@@ -103,12 +110,16 @@ Status check_motor(const Motor& motor, const char* call) {
     return {};
 }
 
-Status check_spring(const Spring& spring, const char* call) {
+Status check_spring(const Spring& spring, bool turns, const char* call) {
     if (!is_finite(spring.stiffness) || !is_finite(spring.damping) || !is_finite(spring.target) ||
         !is_finite(spring.target_velocity) || spring.max_force != spring.max_force)
         return refused_joint(ErrorCode::non_finite, call, "the spring's values must be numbers");
     if (spring.stiffness < 0.0f || spring.damping < 0.0f || spring.max_force < 0.0f)
         return bad_joint(call, "the spring's stiffness, damping and force must not be negative");
+    const float most = turns ? turn : most_apart;
+    if (absolute(spring.target) > most)
+        return bad_joint(call, "the spring's target is " + text(spring.target) + ", must be within " + text(most) +
+                                   (turns ? " rad" : " m"));
     return {};
 }
 
@@ -128,7 +139,7 @@ Status check_rows(const JointDef& def, const char* call) {
             if (def.type == JointType::distance)
                 if (Status s = check_size(def.limit, "limit", call); !s) return s;
             if (Status s = check_motor(def.motor, call); !s) return s;
-            return check_spring(def.spring, call);
+            return check_spring(def.spring, def.type == JointType::hinge, call);
         case JointType::six_degrees:
             return check_six(def.axes, call);
         default:

@@ -12,10 +12,11 @@ namespace lendulet {
 Error refused_joint(ErrorCode code, const char* call, std::string what);
 // Both alive, not the same, and at least one of them dynamic.
 Status check_bodies(const WorldData& world, BodyId a, BodyId b, const char* call);
-// Finite, with a rotation, which is normalised.
+// Finite, no farther than a world is wide, with a rotation, which is normalised.
 Result<Transform> check_frame(const Transform& frame, const char* name, const char* call);
 Status check_motor(const Motor& motor, const char* call);
-Status check_spring(const Spring& spring, const char* call);
+// `turns`: of an angle, else of a length.
+Status check_spring(const Spring& spring, bool turns, const char* call);
 // The limits, motors and springs that joints of that type read.
 Status check_rows(const JointDef& def, const char* call);
 

@@ -75,7 +75,7 @@ bool has_broken(const WorldData& world, uint32_t slot, Vec3& force, Vec3& torque
 
 Result<JointId> World::add_joint(const JointDef& def) {
     constexpr const char* call = "add_joint";
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (Status s = check_bodies(world, def.body_a, def.body_b, call); !s) return s.error();
     Result<Transform> a = check_frame(def.frame_a, "frame A", call), b = check_frame(def.frame_b, "frame B", call);
     if (!a) return a.error();
@@ -108,52 +108,53 @@ Result<JointId> World::add_joint(const JointDef& def) {
 }
 
 Status World::remove_joint(JointId id) {
-    if (!data_->joints.alive(id)) return no_such(data_->joints.slots, id.generation, "remove_joint", "joint");
-    remove_joint_at(*data_, id.index);
+    if (!data().joints.alive(id)) return no_such(data().joints.slots, id.generation, "remove_joint", "joint");
+    remove_joint_at(data(), id.index);
     return {};
 }
 
 Status World::set_motor(JointId id, Motor motor) {
     constexpr const char* call = "set_motor";
-    Result<JointInfo*> driven = driven_joint(*data_, id, call);
+    Result<JointInfo*> driven = driven_joint(data(), id, call);
     if (!driven) return driven.error();
     if (Status s = check_motor(motor, call); !s) return s;
     JointInfo& j = *driven.value();
     j.motor = motor;
-    if (JointAxis* axis = driven_axis(*data_, j)) axis->motor = motor;
-    drive_was_set(*data_, j);
+    if (JointAxis* axis = driven_axis(data(), j)) axis->motor = motor;
+    drive_was_set(data(), j);
     return {};
 }
 
 Status World::set_motor(JointId id, Coordinate coordinate, Motor motor) {
     constexpr const char* call = "set_motor";
-    Result<JointAxis*> axis = axis_of(*data_, id, coordinate, call);
+    Result<JointAxis*> axis = axis_of(data(), id, coordinate, call);
     if (!axis) return axis.error();
     if (Status s = check_motor(motor, call); !s) return s;
     axis.value()->motor = motor;
-    drive_was_set(*data_, data_->joints.info[id.index]);
+    drive_was_set(data(), data().joints.info[id.index]);
     return {};
 }
 
 Status World::set_spring(JointId id, Spring spring) {
     constexpr const char* call = "set_spring";
-    Result<JointInfo*> driven = driven_joint(*data_, id, call);
+    Result<JointInfo*> driven = driven_joint(data(), id, call);
     if (!driven) return driven.error();
-    if (Status s = check_spring(spring, call); !s) return s;
+    if (Status s = check_spring(spring, driven.value()->type == JointType::hinge, call); !s) return s;
     JointInfo& j = *driven.value();
     j.spring = spring;
-    if (JointAxis* axis = driven_axis(*data_, j)) axis->spring = spring;
-    drive_was_set(*data_, j);
+    if (JointAxis* axis = driven_axis(data(), j)) axis->spring = spring;
+    drive_was_set(data(), j);
     return {};
 }
 
 Status World::set_spring(JointId id, Coordinate coordinate, Spring spring) {
     constexpr const char* call = "set_spring";
-    Result<JointAxis*> axis = axis_of(*data_, id, coordinate, call);
+    Result<JointAxis*> axis = axis_of(data(), id, coordinate, call);
     if (!axis) return axis.error();
-    if (Status s = check_spring(spring, call); !s) return s;
+    const bool turns = coordinate >= Coordinate::about_x && coordinate != Coordinate::distance;
+    if (Status s = check_spring(spring, turns, call); !s) return s;
     axis.value()->spring = spring;
-    drive_was_set(*data_, data_->joints.info[id.index]);
+    drive_was_set(data(), data().joints.info[id.index]);
     return {};
 }
 
@@ -229,14 +230,14 @@ Status set_limit_of(World& world, WorldData& data, JointId id, const Coordinate*
 
 }  // namespace
 
-Status World::set_limit(JointId id, Limit limit) { return set_limit_of(*this, *data_, id, nullptr, limit); }
+Status World::set_limit(JointId id, Limit limit) { return set_limit_of(*this, data(), id, nullptr, limit); }
 Status World::set_limit(JointId id, Coordinate coordinate, Limit limit) {
-    return set_limit_of(*this, *data_, id, &coordinate, limit);
+    return set_limit_of(*this, data(), id, &coordinate, limit);
 }
 
 Result<JointDef> World::joint_at(JointType type, BodyId a, BodyId b, Position anchor, Vec3 axis) const {
     constexpr const char* call = "joint_at";
-    const WorldData& world = *data_;
+    const WorldData& world = data();
     if (Status s = check_bodies(world, a, b, call); !s) return s.error();
     if (Status s = valid_position(anchor, call); !s) return s.error();
     if (!is_finite(axis)) return refused_joint(ErrorCode::non_finite, call, "the axis must be finite");
@@ -256,16 +257,16 @@ Result<JointDef> World::joint_at(JointType type, BodyId a, BodyId b, Position an
     return def;
 }
 
-bool World::alive(JointId id) const { return data_->joints.alive(id); }
-int World::joint_count() const { return data_->joints.count(); }
+bool World::alive(JointId id) const { return data().joints.alive(id); }
+int World::joint_count() const { return data().joints.count(); }
 JointId World::joint_id(int index) const {
     if (index < 0 || index >= joint_count()) return {};
-    return data_->joints.id(data_->joints.slots.in_order(index));
+    return data().joints.id(data().joints.slots.in_order(index));
 }
 
 JointDef World::joint_def(JointId id) const {
-    if (!alive(id)) detail::fail(no_such(data_->joints.slots, id.generation, "joint_def", "joint"));
-    const WorldData& world = *data_;
+    if (!alive(id)) detail::fail(no_such(data().joints.slots, id.generation, "joint_def", "joint"));
+    const WorldData& world = data();
     const JointInfo& j = world.joints.info[id.index];
     JointDef def;
     def.type = j.type;

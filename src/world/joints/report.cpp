@@ -90,8 +90,8 @@ JointCoordinates joint_coordinates_of(const WorldData& world, const JointInfo& j
 }
 
 JointState World::joint(JointId id) const {
-    if (!alive(id)) detail::fail(no_such(data_->joints.slots, id.generation, "joint", "joint"));
-    const WorldData& world = *data_;
+    if (!alive(id)) detail::fail(no_such(data().joints.slots, id.generation, "joint", "joint"));
+    const WorldData& world = data();
     const JointInfo& j = world.joints.info[id.index];
     const JointImpulses report = joint_impulses(world, id.index);
     JointPose pose = joint_pose(world, j);

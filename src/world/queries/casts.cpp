@@ -232,26 +232,26 @@ Status check_lengths(size_t in, size_t out, const char* call) {
 }  // namespace
 
 Result<QueryHit> World::cast_ray(const Ray& ray, const QueryFilter& filter) const {
-    if (Status s = checked(*data_, ray, filter, "cast_ray"); !s) return s.error();
-    data_->query_scene.refresh(*data_);
-    return first_hit(Asked(*data_, filter), RayProbe(ray));
+    if (Status s = checked(data(), ray, filter, "cast_ray"); !s) return s.error();
+    data().query_scene.refresh(data());
+    return first_hit(Asked(data(), filter), RayProbe(ray));
 }
 
 Result<bool> World::cast_ray_any(const Ray& ray, const QueryFilter& filter) const {
-    if (Status s = checked(*data_, ray, filter, "cast_ray_any"); !s) return s.error();
-    data_->query_scene.refresh(*data_);
-    return any_hit(Asked(*data_, filter), RayProbe(ray));
+    if (Status s = checked(data(), ray, filter, "cast_ray_any"); !s) return s.error();
+    data().query_scene.refresh(data());
+    return any_hit(Asked(data(), filter), RayProbe(ray));
 }
 
 Result<int> World::cast_ray_all(const Ray& ray, std::span<QueryHit> out, const QueryFilter& filter) const {
-    if (Status s = checked(*data_, ray, filter, "cast_ray_all"); !s) return s.error();
-    data_->query_scene.refresh(*data_);
-    return all_hits(Asked(*data_, filter), RayProbe(ray), out);
+    if (Status s = checked(data(), ray, filter, "cast_ray_all"); !s) return s.error();
+    data().query_scene.refresh(data());
+    return all_hits(Asked(data(), filter), RayProbe(ray), out);
 }
 
 Status World::cast_rays(std::span<const Ray> rays, std::span<QueryHit> out, const QueryFilter& filter) {
     constexpr const char* call = "cast_rays";
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (Status s = check_lengths(rays.size(), out.size(), call); !s) return s;
     if (Status s = check_filter(world, filter, call); !s) return s;
     for (size_t i = 0; i < rays.size(); ++i)
@@ -266,29 +266,29 @@ Status World::cast_rays(std::span<const Ray> rays, std::span<QueryHit> out, cons
 }
 
 Result<QueryHit> World::cast_shape(const ShapeCast& cast, const QueryFilter& filter) const {
-    Result<QueryCast> c = checked(*data_, cast, filter, "cast_shape");
+    Result<QueryCast> c = checked(data(), cast, filter, "cast_shape");
     if (!c) return c.error();
-    data_->query_scene.refresh(*data_);
-    return first_hit(Asked(*data_, filter), ShapeProbe(c.value()));
+    data().query_scene.refresh(data());
+    return first_hit(Asked(data(), filter), ShapeProbe(c.value()));
 }
 
 Result<bool> World::cast_shape_any(const ShapeCast& cast, const QueryFilter& filter) const {
-    Result<QueryCast> c = checked(*data_, cast, filter, "cast_shape_any");
+    Result<QueryCast> c = checked(data(), cast, filter, "cast_shape_any");
     if (!c) return c.error();
-    data_->query_scene.refresh(*data_);
-    return any_hit(Asked(*data_, filter), ShapeProbe(c.value()));
+    data().query_scene.refresh(data());
+    return any_hit(Asked(data(), filter), ShapeProbe(c.value()));
 }
 
 Result<int> World::cast_shape_all(const ShapeCast& cast, std::span<QueryHit> out, const QueryFilter& filter) const {
-    Result<QueryCast> c = checked(*data_, cast, filter, "cast_shape_all");
+    Result<QueryCast> c = checked(data(), cast, filter, "cast_shape_all");
     if (!c) return c.error();
-    data_->query_scene.refresh(*data_);
-    return all_hits(Asked(*data_, filter), ShapeProbe(c.value()), out);
+    data().query_scene.refresh(data());
+    return all_hits(Asked(data(), filter), ShapeProbe(c.value()), out);
 }
 
 Status World::cast_shapes(std::span<const ShapeCast> casts, std::span<QueryHit> out, const QueryFilter& filter) {
     constexpr const char* call = "cast_shapes";
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (Status s = check_lengths(casts.size(), out.size(), call); !s) return s;
     for (size_t i = 0; i < casts.size(); ++i)
         if (Result<QueryCast> c = checked(world, casts[i], filter, call); !c) return at_place(c.error(), i);

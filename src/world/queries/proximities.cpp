@@ -101,37 +101,37 @@ Result<Proximity> World::closest(const PosedShape& shape, float max_distance, co
     Result<QueryShape> s = check_convex(shape, call);
     if (!s) return s.error();
     if (Status d = check_distance(max_distance, call); !d) return d.error();
-    if (Status f = check_filter(*data_, filter, call); !f) return f.error();
-    data_->query_scene.refresh(*data_);
-    return nearest_of({*data_, filter, s.value()}, max_distance);
+    if (Status f = check_filter(data(), filter, call); !f) return f.error();
+    data().query_scene.refresh(data());
+    return nearest_of({data(), filter, s.value()}, max_distance);
 }
 
 Result<Proximity> World::closest(Position point, float max_distance, const QueryFilter& filter) const {
     constexpr const char* call = "closest";
     if (Status p = check_point(point, call); !p) return p.error();
     if (Status d = check_distance(max_distance, call); !d) return d.error();
-    if (Status f = check_filter(*data_, filter, call); !f) return f.error();
-    data_->query_scene.refresh(*data_);
+    if (Status f = check_filter(data(), filter, call); !f) return f.error();
+    data().query_scene.refresh(data());
     QueryShape dot = dot_at(point);
-    return nearest_of({*data_, filter, dot}, max_distance);
+    return nearest_of({data(), filter, dot}, max_distance);
 }
 
 Result<int> World::overlap_shape(const PosedShape& shape, std::span<Proximity> out, const QueryFilter& filter) const {
     constexpr const char* call = "overlap_shape";
     Result<QueryShape> s = check_convex(shape, call);
     if (!s) return s.error();
-    if (Status f = check_filter(*data_, filter, call); !f) return f.error();
-    data_->query_scene.refresh(*data_);
-    return all_overlaps({*data_, filter, s.value()}, out, false);
+    if (Status f = check_filter(data(), filter, call); !f) return f.error();
+    data().query_scene.refresh(data());
+    return all_overlaps({data(), filter, s.value()}, out, false);
 }
 
 Result<bool> World::overlap_any(const PosedShape& shape, const QueryFilter& filter) const {
     constexpr const char* call = "overlap_any";
     Result<QueryShape> s = check_convex(shape, call);
     if (!s) return s.error();
-    if (Status f = check_filter(*data_, filter, call); !f) return f.error();
-    data_->query_scene.refresh(*data_);
-    const ShapeSearch search(*data_, filter, s.value());
+    if (Status f = check_filter(data(), filter, call); !f) return f.error();
+    data().query_scene.refresh(data());
+    const ShapeSearch search(data(), filter, s.value());
     bool any = false;
     search.for_each_candidate([&](uint32_t c) {
         Nearness n;
@@ -147,21 +147,21 @@ Result<int> World::overlap_box(const Aabb& box, std::span<Proximity> out, const 
     Vec3 size = box.upper - box.lower;
     if (!(min_component(size) >= 0.0f))
         return Error{ErrorCode::bad_query, "overlap_box: the box's lower corner is above its upper one"};
-    if (Status f = check_filter(*data_, filter, call); !f) return f.error();
-    data_->query_scene.refresh(*data_);
+    if (Status f = check_filter(data(), filter, call); !f) return f.error();
+    data().query_scene.refresh(data());
     QueryShape s{Geometry{}, {box.lower + 0.5f * size, {}}};
     s.geometry.kind = GeometryKind::box;
     s.geometry.size = 0.5f * size;
-    return all_overlaps({*data_, filter, s}, out, false);
+    return all_overlaps({data(), filter, s}, out, false);
 }
 
 Result<int> World::overlap_point(Position point, std::span<Proximity> out, const QueryFilter& filter) const {
     constexpr const char* call = "overlap_point";
     if (Status p = check_point(point, call); !p) return p.error();
-    if (Status f = check_filter(*data_, filter, call); !f) return f.error();
-    data_->query_scene.refresh(*data_);
+    if (Status f = check_filter(data(), filter, call); !f) return f.error();
+    data().query_scene.refresh(data());
     QueryShape dot = dot_at(point);
-    return all_overlaps({*data_, filter, dot}, out, true);
+    return all_overlaps({data(), filter, dot}, out, true);
 }
 
 }  // namespace lendulet

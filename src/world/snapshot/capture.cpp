@@ -203,7 +203,7 @@ void capture(const WorldData& world, SavedState& state) {
 
 std::vector<uint8_t> World::snapshot() const {
     SavedState state;
-    capture(*data_, state);
+    capture(data(), state);
     return encode(state);
 }
 

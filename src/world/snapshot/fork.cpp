@@ -20,11 +20,11 @@ void fill_defaults(WorldData& world, const WorldConfig& before) {
 Result<World> World::fork() const { return fork(config()); }
 
 Result<World> World::fork(const WorldConfig& settings) const {
-    const WorldData& from = *data_;
+    const WorldData& from = data();
     if (from.in_step) return Error{ErrorCode::locked, "fork: called from inside a step"};
     Result<World> built = WorldBuilder(settings).build();
     if (!built) return built.error();
-    WorldData& to = *built.value().data_;
+    WorldData& to = built.value().data();
     to.bodies.copy(from.bodies);
     to.colliders.copy(from.colliders);
     to.joints.copy(from.joints);

@@ -381,7 +381,7 @@ void apply(WorldData& world, const SavedState& state) {
 }
 
 Status World::restore(std::span<const uint8_t> snapshot) {
-    WorldData& world = *data_;
+    WorldData& world = data();
     if (world.in_step) return Error{ErrorCode::locked, "restore: called from inside a step"};
     SavedState state;
     if (Status s = decode(snapshot, state); !s) return s;
