@@ -61,7 +61,7 @@ LENDULET_FORCE_INLINE JointChange<W, C> held_impulses(const JointRow<W, C>& c) {
 }
 
 // How fast the relative motion changes by itself along the turning axes: joints must be ahead of it by half a substep
-// for their gap to close at the end of the drift.
+// for their gap to close at the end of the drift, and for a coordinate to change there by h times the rate asked for.
 template <class F>
 LENDULET_FORCE_INLINE Vec3T<F> sliding_curvature(const JointPair<F>& p, Vec3T<F> ra, Vec3T<F> rb, Vec3T<F> sliding) {
     Vec3T<F> b = cross(p.gyro_b, rb) + cross(p.spin_b(), cross(p.spin_b(), rb));
@@ -71,6 +71,14 @@ LENDULET_FORCE_INLINE Vec3T<F> sliding_curvature(const JointPair<F>& p, Vec3T<F>
 template <class F>
 LENDULET_FORCE_INLINE Vec3T<F> turning_curvature(const JointPair<F>& p) {
     return (p.gyro_b - p.gyro_a) + cross(p.spin_b(), p.spin_a());
+}
+
+// By how much the mean of a rate over the drift is ahead of what it is before it. What turns fast enough to reach the
+// limit is not resolved by the substep; without it, errors would feed themselves.
+template <class F>
+LENDULET_FORCE_INLINE F rate_ahead(F curvature, const JointConstants& k) {
+    const F most = splat<F>(joint_push_speed);
+    return maximum(minimum(splat<F>(0.5f * k.h) * curvature, most), splat<F>(0.0f) - most);
 }
 
 // Share of errors undone in a pass. Soft rows undo half of it where they give up the leak of half an impulse, at the
@@ -90,13 +98,10 @@ LENDULET_FORCE_INLINE void locked_speeds(const JointRow<W, C>& c, const JointGeo
     using F = Wide<float, W>;
     using S = JointShape<C>;
     const F zero = splat<F>(0.0f), rate = bias_of<W, C>(c, k, split) * splat<F>(k.inverse_h);
-    const F most = splat<F>(joint_push_speed), half_h = splat<F>(0.5f * k.h);
-    auto limited = [&](F speed) { return maximum(minimum(speed, most), zero - most); };
-    auto push = [&](F gap) { return limited(rate * gap); };
-    // What turns fast enough to reach this limit is not resolved by the substep; without it, errors would feed
-    // themselves.
+    const F most = splat<F>(joint_push_speed);
+    auto push = [&](F gap) { return maximum(minimum(rate * gap, most), zero - most); };
     auto ahead = [&](Vec3T<F> curvature) {
-        return Vec3T<F>{limited(half_h * curvature.x), limited(half_h * curvature.y), limited(half_h * curvature.z)};
+        return Vec3T<F>{rate_ahead(curvature.x, k), rate_ahead(curvature.y, k), rate_ahead(curvature.z, k)};
     };
     Vec3T<F> sliding = p.sliding(o.ra, o.rb), turning = p.turning();
     if constexpr (biased) {
@@ -223,6 +228,10 @@ LENDULET_FORCE_INLINE void solve_bounded(JointRow<W, C>& c, const JointGeometry<
     for (int j = 0; j < S::bounded; ++j) {
         Vec3T<F> u = o.direction[S::limited_ball ? j : 2];
         v[j] = S::slider ? dot(u, sliding) : dot(u, turning);
+        // A motor, spring or damper is about how far the coordinate gets, not about how fast it sets out.
+        if constexpr (S::driven && biased)
+            v[j] = v[j] +
+                   rate_ahead(dot(u, S::slider ? sliding_curvature(p, o.ra, o.rb, sliding) : turning_curvature(p)), k);
         const F coordinate = S::limited_ball && j == 1 ? near_bounds(c.row[j], o.coordinate[j]) : o.coordinate[j];
         range[j] = speed_range<biased>(c.row[j], coordinate, bias_of<W, C>(c, k, split), k);
         busy = busy | (v[j] < range[j].slowest) | (v[j] > range[j].fastest) | (c.row[j].limit != zero);

@@ -89,14 +89,15 @@ LENDULET_FORCE_INLINE Wide<float, W> solve_motor(Row& row, const JointConstants&
     return turn;
 }
 
-// How fast the coordinate's rate changes by the motion itself: bounds are to be met at the end of the drift, as locked
-// rows are. A distance also grows by what moves across it.
+// How far the mean of the coordinate's rate over the drift is ahead of it by the motion itself: bounds are to be met at
+// the end of the drift, as locked rows are, and a motor is to get as far as it was told. A distance also grows by what
+// moves across it.
 template <int W>
 LENDULET_FORCE_INLINE Wide<float, W> axis_curvature(int j, const SixRow<W>& c, const SixGeometry<W>& o,
                                                     const JointPair<Wide<float, W>>& p, const JointConstants& k,
                                                     Vec3T<Wide<float, W>> sliding) {
     using F = Wide<float, W>;
-    const F zero = splat<F>(0.0f), most = splat<F>(joint_push_speed), half_h = splat<F>(0.5f * k.h);
+    const F zero = splat<F>(0.0f);
     Vec3T<F> u = o.direction[j];
     F curvature;
     if (is_linear_row(j)) {
@@ -110,7 +111,7 @@ LENDULET_FORCE_INLINE Wide<float, W> axis_curvature(int j, const SixRow<W>& c, c
     } else {
         curvature = dot(u, turning_curvature(p));
     }
-    return maximum(minimum(half_h * curvature, most), zero - most);
+    return rate_ahead(curvature, k);
 }
 
 // One row: what its impulse changes.
@@ -123,13 +124,13 @@ LENDULET_FORCE_INLINE Wide<float, W> solve_axis(int j, SixRow<W>& c, const SixGe
     const F zero = splat<F>(0.0f);
     Vec3T<F> sliding = p.sliding(o.ra, o.rb);
     F v = dot(o.direction[j], is_linear_row(j) ? sliding : p.turning());
+    if constexpr (biased) v = v + axis_curvature<W>(j, c, o, p, k, sliding);
     F change = solve_springs<W, biased>(row, k, split, c.relaxation, rate, o.coordinate[j], v);
     change = change + solve_motor<W>(row, k, split, c.relaxation, rate, v + rate * change);
     const F coordinate = j < 3 || j >= distance_row ? o.coordinate[j] : near_bounds(row, o.coordinate[j]);
     SpeedRange<F> range = speed_range<biased>(row, coordinate, bias_of(c, k, split), k);
-    F speed = v + rate * change;
-    if constexpr (biased) speed = speed + axis_curvature<W>(j, c, o, p, k, sliding);
-    F held = row.limit, pushed = solve_limit<biased>(row, range, rate, c.leak, c.relaxation, speed);
+    F held = row.limit;
+    F pushed = solve_limit<biased>(row, range, rate, c.leak, c.relaxation, v + rate * change);
     auto hard = row.limit_stiffness <= zero;
     row.limit = select(hard, row.limit, held);
     change = change + select(hard, pushed, zero);
