@@ -11,12 +11,14 @@ constexpr int max_sweeps = 8, crowd_sweeps = 2;
 struct Meeting {
     Moment a, b;
     float inverse_masses;
+    ImpactJoints* joints = nullptr;  // where a body has any
 
     Vec3 slip() const { return (b.v + cross(b.w, b.arm)) - (a.v + cross(a.w, a.arm)); }
     // T^-1, thesis 3.3.2: how much the relative velocity along u changes per unit impulse along w.
     float response(Vec3 u, Vec3 w) const {
-        return inverse_masses * dot(u, w) + dot(cross(a.arm, u), a.inverse_inertia * cross(a.arm, w)) +
-               dot(cross(b.arm, u), b.inverse_inertia * cross(b.arm, w));
+        const float free = inverse_masses * dot(u, w) + dot(cross(a.arm, u), a.inverse_inertia * cross(a.arm, w)) +
+                           dot(cross(b.arm, u), b.inverse_inertia * cross(b.arm, w));
+        return joints ? free - joints->held_back(a.arm, b.arm, u, w) : free;
     }
 };
 
@@ -99,12 +101,45 @@ Vec3 impact_impulse(const Meeting& m, const ContactRecord& r, Vec3 n, float spee
     return minimum(1.0f, -2.0f * work / effort) * impulse;
 }
 
+// Whether one of the two bodies has joints.
+bool joined(const SolverBodies& bodies, const ContactRecord& r) {
+    auto has = [&](int32_t i) {
+        return bodies.blocks[static_cast<size_t>(i / block_bodies)].joints[i % block_bodies] != 0.0f;
+    };
+    return has(r.body_a) || has(r.body_b);
+}
+
+// Finds what joints hand an impact on to, and puts it where it is then.
+void reach(ImpactJoints& joints, SolverBodies& bodies, const ContactRecord& r, float time, bool first) {
+    for (ReachedBody& reached : joints.reach(bodies, r.body_a, r.body_b)) {
+        Side side(bodies, reached.body);
+        side.aim({});
+        const Moment m = side.after(time, first);
+        reached.dp = load(side.state->dp) + (time * side.now.v + (0.5f * time * time) * side.acceleration);
+        reached.dq = m.dq;
+        if (side.movable()) reached.inverse_inertia = m.inverse_inertia;
+    }
+    joints.lock(bodies);
+}
+
+// What joints hand on of an impact.
+void push_reached(SolverBodies& bodies, const Meeting& m, Vec3 impulse, float time, bool first, int sweep) {
+    for (const ReachedBody& r : m.joints->hand_on(m.a.arm, m.b.arm, impulse)) {
+        Side side(bodies, r.body);
+        if (!side.movable()) continue;
+        side.aim({});
+        side.apply(side.after(time, first), r.impulse, r.angular_impulse, time, first);
+        bodies.start[static_cast<size_t>(r.body)].struck = sweep;
+    }
+}
+
 #include "solver/face_impact.inl"
 
 // One point of a manifold, of which `a` and `b` are the bodies as they are; true where it bounced, and they are not any
 // more.
 bool bounce_point(SolverBodies& bodies, Side& a, Side& b, const ContactRecord& r, const ContactPointRecord& point,
-                  const ContactExtra* extra, const SubstepConstants& k, int sweep, WatchedContact* watched) {
+                  const ContactExtra* extra, const SubstepConstants& k, int sweep, WatchedContact* watched,
+                  ImpactJoints* joints) {
     const float slowest = slowest_bounce(r) * k.bounce_speed;
     const Nearing near = nearing_of(a, b, r, point, k.h);
     const Impact first = near.first;
@@ -136,10 +171,18 @@ bool bounce_point(SolverBodies& bodies, Side& a, Side& b, const ContactRecord& r
     const float speed = -dot(m.slip(), n);
     if (!(speed >= slowest)) return false;
 
+    if (joints && joined(bodies, r)) {
+        reach(*joints, bodies, r, time, k.first);
+        m.joints = joints;
+    }
     const Vec3 impulse = impact_impulse(m, r, n, speed, extra);
     if (watched) {
         const Vec3 way = time * b.now.v + (0.5f * time * time) * b.acceleration;
         note_impact(*watched, speed, dot(impulse, n), n, load(b.state->dp) + way + m.b.arm);
+    }
+    if (m.joints) {
+        push_reached(bodies, m, impulse, time, k.first, sweep);
+        return true;
     }
     a.apply(m.a, -impulse, time, k.first);
     b.apply(m.b, impulse, time, k.first);
@@ -163,7 +206,7 @@ bool bounce_points(SolverBodies& bodies, const ContactRecord* records, const Imp
     for (int j = 0; j < (at_once ? 1 : r.point_count); ++j) {
         if (!at_once && fresh && r.normal_impulse[j] > 0.0f) continue;
         const ContactPointRecord& point = at_once ? together : r.points[j];
-        if (!bounce_point(bodies, a, b, r, point, extra, k, sweep, watched)) continue;
+        if (!bounce_point(bodies, a, b, r, point, extra, k, sweep, watched, list.joints)) continue;
         met = true;
         a = Side(bodies, r.body_a), b = Side(bodies, r.body_b);
     }
@@ -237,7 +280,10 @@ bool resolve_impacts(SolverBodies& bodies, const ContactRecord* records, const I
             if (still && c.held) continue;
             const bool met = bounce_points(bodies, records, list, c, still, k, number);
             bounced |= met;
-            if (met && list.disturbed) list.disturbed[a] = list.disturbed[b] = 1;
+            if (!met || !list.disturbed) continue;
+            list.disturbed[a] = list.disturbed[b] = 1;
+            if (!list.joints || !joined(bodies, records[c.record])) continue;
+            for (const ReachedBody& reached : list.joints->reached()) list.disturbed[reached.body] = 1;
         }
         any |= bounced;
         if (!bounced) break;

@@ -6,6 +6,7 @@
 
 #include "solver/bodies.h"
 #include "solver/contact.h"
+#include "solver/impact_joints.h"
 #include "solver/kernels.h"
 #include "solver/watch.h"
 
@@ -19,6 +20,7 @@ struct ImpactList {
     const ContactExtra* extras;  // what some have beside, by record; null where none has
     uint8_t* disturbed;          // by body: 1 where it no longer moves as the step began; null where no contact passes
     WatchList watched{};         // contacts whose impacts are noted
+    ImpactJoints* joints = nullptr;  // of this step; null where there are none
 };
 
 // Marks bodies of the range that constraints have moved since the last substep began; before its kick.

@@ -108,8 +108,12 @@ struct Side {
     // The impulse acts on the body as it is at `m`, `time` from now: it is put where the new momenta, back from there,
     // would have had it begin, so that from then on it is where they lead.
     void apply(const Moment& m, Vec3 impulse, float time, bool first) const {
+        apply(m, impulse, cross(m.arm, impulse), time, first);
+    }
+    // The same with an angular impulse dL about the centre of mass.
+    void apply(const Moment& m, Vec3 impulse, Vec3 dL, float time, bool first) const {
         if (!movable()) return;
-        const Vec3 dv = state->inverse_mass * impulse, dL = cross(m.arm, impulse);
+        const Vec3 dv = state->inverse_mass * impulse;
         if (!first) {
             const Vec3 changed = unsettled();
             add_lanes(block->L, changed);

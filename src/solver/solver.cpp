@@ -139,6 +139,7 @@ void Solver::prepare(TaskPool& tasks, SolverBodies& bodies, const ContactRecord*
 void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joints, ContactList contacts,
                             JointReuse reuse) {
     joints_.prepare(tasks, bodies, joints, contacts, reuse);
+    impact_joints_.begin_step(joints);
 }
 
 // In every pass what lies between tiles comes before what lies within them; so contacts with what is not moved, which
@@ -177,7 +178,8 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
                                   meetings_.data(),
                                   extras_,
                                   passing_ > 0 ? disturbed_.data() : nullptr,
-                                  watched_};
+                                  watched_,
+                                  k.joints ? &impact_joints_ : nullptr};
             k.moved = resolve_impacts(bodies, records, list, k, substep);
         }
         if (watched_.count > 0) foresee_watched(tasks, bodies, records, k);

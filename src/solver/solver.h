@@ -54,6 +54,7 @@ public:
           foreseen_(memory),
           watched_meetings_(memory),
           joints_(memory, width),
+          impact_joints_(memory),
           kernels_(solver_kernels(width)) {}
 
     // Colours manifolds by their ends; `list` names their records. `extras`, by record: see ContactExtra; null where no
@@ -76,6 +77,7 @@ public:
     void make_ready(size_t bodies, size_t contacts, size_t joints) {
         schedule_.order.make_ready(contacts);
         joints_.make_ready(bodies, joints);
+        if (joints > 0) impact_joints_.make_ready(bodies, joints);
     }
     // Of a contact of four points, without empty lanes.
     size_t largest_row() const { return kernels_.row_bytes[2] / static_cast<size_t>(kernels_.width); }
@@ -155,6 +157,7 @@ private:
     Array<ImpactContact> foreseen_;         // those that have rows and are asked how fast they meet
     Array<MeetingBlock> watched_meetings_;  // of these
     JointSolver joints_;
+    ImpactJoints impact_joints_;
     const SolverKernels& kernels_;
 };
 
