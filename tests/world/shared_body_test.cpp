@@ -31,7 +31,8 @@ Bed slab_on_balls(int width, int workers) {
         bed.world.add_rigid_body({.shape = Sphere{0.3f}, .position = {x, 0.3f, z}}).value();
     }
     bed.slab =
-        bed.world.add_rigid_body({.shape = Box{{3.7f, 0.2f, 3.7f}}, .position = {0.0f, 0.81f, 0.0f}, .density = 3000.0f})
+        bed.world
+            .add_rigid_body({.shape = Box{{3.7f, 0.2f, 3.7f}}, .position = {0.0f, 0.81f, 0.0f}, .density = 3000.0f})
             .value();
     return bed;
 }
@@ -93,7 +94,9 @@ TEST(SharedBody, JointsThatShareItHaveTheSameBitsForAllWidths) {
         for (int i = 0; i < 48; ++i) {
             const float turn = 2.0f * pi * static_cast<float>(i) / 48.0f, x = std::cos(turn), z = std::sin(turn);
             const BodyId arm =
-                world.add_rigid_body({.shape = Sphere{0.1f}, .position = {1.5f * x, 5.0f, 1.5f * z}, .filter = {.group = 1}})
+                world
+                    .add_rigid_body(
+                        {.shape = Sphere{0.1f}, .position = {1.5f * x, 5.0f, 1.5f * z}, .filter = {.group = 1}})
                     .value();
             const JointDef joint = world.joint_at(JointType::ball, hub, arm, {1.1f * x, 5.0f, 1.1f * z}).value();
             world.add_joint(joint).value();
