@@ -6,7 +6,7 @@ namespace {
 // An impact goes through so many joints at most; what is behind them answers as if it were free. Its cost goes with the
 // square of their number: with 16 the longest step of a hundred ragdolls that bounce took three times as long.
 constexpr int most_joints = 8;
-constexpr int most_rows = 6 * most_joints;
+constexpr int most_rows = 7 * most_joints;  // three each way, and a distance
 // Joints give way by this share of what they would without each other, so that those that say the same twice, as in
 // closed loops, have a solution.
 constexpr double give = 1e-5;

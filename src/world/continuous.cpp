@@ -292,8 +292,15 @@ void limit_energy(WorldData& world, uint32_t body, const BodyPath& path) {
     m.p = scale * m.p, m.p_low = {}, m.L = scale * m.L;
 }
 
+// Whether the surfaces of a contact run over their bodies, and so may give these energy.
+bool is_driven(const WorldData& world, uint32_t record) {
+    if (!world.has_extras) return false;
+    const float* v = world.extras[record].running;
+    return v[0] != 0.0f || v[1] != 0.0f || v[2] != 0.0f;
+}
+
 // For the suspects that turned far, by the spin before the step or after it, touch something and touch nothing that
-// moves.
+// moves or runs.
 void limit_energies(WorldData& world, float dt) {
     ContinuousData& c = world.continuous;
     bool any = false;
@@ -305,9 +312,13 @@ void limit_energies(WorldData& world, float dt) {
         any = any || far;
     }
     if (!any) return;
-    for (const ContactEnds& e : world.active_ends)
-        if (e.a >= reserved_bodies && e.b >= reserved_bodies)
-            for (int32_t body : {e.a, e.b}) c.is_suspect[static_cast<size_t>(body - reserved_bodies)] = 1;
+    for (size_t i = 0; i < world.active_ends.size(); ++i) {
+        const ContactEnds& e = world.active_ends[i];
+        const bool both = e.a >= reserved_bodies && e.b >= reserved_bodies;
+        if (!both && !is_driven(world, world.active[i])) continue;
+        for (int32_t body : {e.a, e.b})
+            if (body >= reserved_bodies) c.is_suspect[static_cast<size_t>(body - reserved_bodies)] = 1;
+    }
     for (uint32_t body : c.suspects) {
         const size_t place = place_of(world, body);
         const BodyMotion& motion = world.solver_bodies.motion[place + reserved_bodies];

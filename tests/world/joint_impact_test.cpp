@@ -52,6 +52,35 @@ TEST(JointImpacts, ARowOfBallsBouncesAsOne) {
                 EXPECT_NEAR(rebound(type, balls, e), 5.0f * e, 0.1f * e) << static_cast<int>(type) << " " << balls;
 }
 
+// A long row whose joints lock all there is to lock, and say a part of it twice.
+TEST(JointImpacts, GoThroughJointsOfAsManyRowsAsThereAre) {
+    World world = WorldBuilder{}.no_gravity().sleep(false).build().value();
+    world.add_static_body({.shape = Plane{}}).value();
+    std::vector<BodyId> row;
+    for (int i = 0; i < 10; ++i) {
+        const float y = 1.0f + 0.5f * static_cast<float>(i);
+        row.push_back(world
+                          .add_rigid_body({.shape = Sphere{0.25f},
+                                           .position = {0.0f, y, 0.0f},
+                                           .velocity = {0.0f, -5.0f, 0.0f},
+                                           .restitution = 1.0f,
+                                           .filter = one_group})
+                          .value());
+        if (i == 0) continue;
+        JointDef def{.type = JointType::six_degrees, .body_a = row[row.size() - 2], .body_b = row.back()};
+        def.frame_a.translation = {0.0f, 0.25f, 0.0f}, def.frame_b.translation = {0.0f, -0.25f, 0.0f};
+        for (JointAxis& a : def.axes.linear) a.limit = {0.0f, 0.0f};
+        for (JointAxis& a : def.axes.angular) a.limit = {0.0f, 0.0f};
+        for (bool& d : def.axes.distance_axes) d = true;
+        def.axes.distance.limit = {0.0f, 0.0f};
+        world.add_joint(def).value();
+    }
+    run(world, 40);
+    ASSERT_TRUE(test::all_finite(world));
+    EXPECT_GT(world.get(row.front()).velocity().y, 0.0f);
+    EXPECT_LT(world.kinetic_energy(), 10 * 0.5 * 25.0 * static_cast<double>(world.get(row.front()).mass()) * 1.001);
+}
+
 TEST(JointImpacts, EveryWidthAndNumberOfWorkersGivesTheSameBits) {
     uint64_t expected = 0, hash = 0;
     for (auto [width, workers] : {std::pair{1, 1}, {4, 2}, {8, 1}, {16, 5}}) {

@@ -53,6 +53,17 @@ TEST(RunningSurface, ABallRollsAtTwoSeventhsOfIt) {
     EXPECT_NEAR(body.velocity_at({body.position().x, 0.0, body.position().z}).z, -3.5f, 5e-3f);
 }
 
+// A fast and small one, which turns by a radian in a step, is carried as well: what turns far and touches nothing that
+// moves may not gain energy, but from a belt it does.
+TEST(RunningSurface, CarriesWhatTurnsFast) {
+    World world = make(0.8f);
+    const float u = 6.0f;
+    add_belt(world, {u, 0.0f, 0.0f});
+    BodyId ball = world.add_rigid_body({.shape = Sphere{0.05f}, .position = {0.0f, 0.05f, 0.0f}}).value();
+    test::run(world, 30);
+    EXPECT_NEAR(world.get(ball).velocity().x, 2.0f / 7.0f * u, 0.01f * u);
+}
+
 TEST(RunningSurface, TheBeltsBodyFeelsTheReaction) {
     World world = WorldBuilder{}.down_gravity(weight).friction(0.0f).build().value();
     test::add_floor(world);
@@ -172,6 +183,29 @@ TEST(RunningSurface, ImpactsTakeItAlong) {
         test::run(world, 40);  // it strikes after 0.45 s and again after 0.99
         const float sliding = mu * (1.0f + e) * std::sqrt(2.0f * weight * fall), sticking = 2.0f / 7.0f * u;
         EXPECT_NEAR(world.get(ball).velocity().x, std::fmin(sliding, sticking), 0.01f * sticking) << mu;
+    }
+}
+
+// A belt is a floor seen by who moves along: also to what turns far within a step, whose rows turn with it.
+TEST(RunningSurface, IsAFloorSeenFromElsewhere) {
+    const float u = 3.0f;
+    const Vec3 spins[] = {{0.0f, 25.0f, 0.0f}, {0.0f, 0.0f, -12.0f}, {8.0f, 20.0f, 5.0f}};
+    for (const Vec3 spin : spins) {
+        Vec3 velocity[2], left[2];
+        for (const bool runs : {false, true}) {
+            World world = make(0.3f);
+            add_belt(world, runs ? Vec3{u, 0.0f, 0.0f} : Vec3{});
+            const BodyId box = world
+                                   .add_rigid_body({.shape = Box{{0.3f, 0.2f, 0.25f}},
+                                                    .position = {0.0f, 0.2f, 0.0f},
+                                                    .velocity = {runs ? 0.0f : -u, 0.0f, 0.0f},
+                                                    .angular_velocity = spin})
+                                   .value();
+            test::run(world, 12);
+            velocity[runs] = world.get(box).velocity(), left[runs] = world.get(box).angular_velocity();
+        }
+        EXPECT_LT(length(velocity[1] - velocity[0] - Vec3{u, 0.0f, 0.0f}), 0.01f * u) << spin.x << " " << spin.y;
+        EXPECT_LT(length(left[1] - left[0]), 0.01f * length(spin)) << spin.x << " " << spin.y;
     }
 }
 
