@@ -191,6 +191,8 @@ float arc_cosine(float x);
 Quat rotation_about(Vec3 axis, float angle_rad);
 // The shortest rotation that takes unit vector a onto unit vector b.
 Quat rotation_between(Vec3 a, Vec3 b);
+// The share t (0: a, 1: b) of the even turn from a to b by the shorter way. (Shoemake, SIGGRAPH 1985)
+Quat interpolate(Quat a, Quat b, float t);
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Matrices
@@ -274,6 +276,10 @@ LENDULET_FORCE_INLINE constexpr Position operator*(const Pose& a, Vec3 p) {
 }
 LENDULET_FORCE_INLINE constexpr Pose operator*(const Pose& a, const Transform& b) {
     return {a * b.translation, a.orientation * b.rotation};
+}
+// The share t (0: a, 1: b) of the even motion from a to b: for what is drawn between two steps.
+inline Pose interpolate(const Pose& a, const Pose& b, float t) {
+    return {a.position + t * (b.position - a.position), interpolate(a.orientation, b.orientation, t)};
 }
 // The point p of the world, seen from the frame `a`.
 LENDULET_FORCE_INLINE constexpr Vec3 to_local(const Pose& a, Position p) {

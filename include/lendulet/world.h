@@ -231,6 +231,11 @@ public:
     int body_count() const;
     int joint_count() const;
     BodyId body(int index) const;  // 0 .. body_count() - 1
+    // Bodies that may be elsewhere than before the last update(): those that moved in its last step, with those that it
+    // put to sleep, and the dynamic and kinematic ones that were added, placed or woken since. Whoever draws need copy
+    // the poses of no others, but of all after restore(). Writes as many as fit, returns how many there are. O(what
+    // moves).
+    int moved_bodies(std::span<BodyId> out) const;
     JointId joint_id(int index) const;
     // Contacts of the last step, ordered by colliders, and after them those among bodies at rest as these came to rest:
     // the same for every broad phase and number of workers. Where a body is removed the last of either kind takes the

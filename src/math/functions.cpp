@@ -163,4 +163,13 @@ Quat rotation_between(Vec3 a, Vec3 b) {
     return unit_quat(cross(from, to), twice_cosine_squared);
 }
 
+Quat interpolate(Quat a, Quat b, float t) {
+    Quat turn = conjugate(a) * b;
+    const float sign = turn.w < 0.0f ? -1.0f : 1.0f;
+    const Vec3 axis{turn.x, turn.y, turn.z};
+    const float sine = length(axis);  // of half the turn
+    if (!(sine > 0.0f)) return a;
+    return normalize(a * rotation_about(sign * axis, 2.0f * t * arc_tangent2(sine, sign * turn.w)));
+}
+
 }  // namespace lendulet

@@ -183,6 +183,15 @@ BodyId World::body(int index) const {
     if (index < 0 || index >= body_count()) return {};
     return data().bodies.id(data().bodies.slots.in_order(index));
 }
+int World::moved_bodies(std::span<BodyId> out) const {
+    size_t count = 0;
+    for (uint32_t slot : data().movers.bodies) {
+        if (slot == no_slot) continue;
+        if (count < out.size()) out[count] = data().bodies.id(slot);
+        ++count;
+    }
+    return static_cast<int>(count);
+}
 int World::contact_count() const { return data().touching.count() + data().resting.records.count(); }
 BodyId World::body_of(ColliderId id) const {
     return data().colliders.alive(id) ? data().bodies.id(data().colliders.info[id.index].body) : BodyId{};

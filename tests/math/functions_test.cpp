@@ -155,5 +155,29 @@ TEST(RotationTest, BetweenTakesOneOntoTheOther) {
     }
 }
 
+// Even turns: shares add up, the way is the shorter one, and both signs of a quaternion are the same rotation.
+TEST(Interpolation, TurnsEvenlyByTheShorterWay) {
+    std::mt19937 random(31);
+    std::normal_distribution<float> component;
+    auto pick = [&] {
+        return normalize(Quat{component(random), component(random), component(random), component(random)});
+    };
+    for (int i = 0; i < 2000; ++i) {
+        const Quat a = pick();
+        const Vec3 axis = normalize(Vec3{component(random), component(random), component(random)});
+        const float angle = std::ldexp(3.1f, -(i % 24)), t = 0.001f * static_cast<float>(i % 1001);
+        const Quat b = rotation_about(axis, angle) * a;
+        const Quat expected = rotation_about(axis, t * angle) * a;
+        EXPECT_NEAR(absolute(dot(interpolate(a, b, t), expected)), 1.0f, 4e-7f);
+        EXPECT_NEAR(absolute(dot(interpolate(a, {-b.x, -b.y, -b.z, -b.w}, t), expected)), 1.0f, 4e-7f);
+        for (Vec3 v : {Vec3{1, 0, 0}, Vec3{0, 1, 0}})
+            EXPECT_LT(length(rotate(interpolate(a, b, t), v) - rotate(expected, v)), 2e-6f);
+    }
+    EXPECT_EQ(interpolate(Quat{}, Quat{}, 0.3f), Quat{});
+    const Pose half = interpolate(Pose{{1, 2, 3}, {}}, Pose{{3, 2, -3}, rotation_about({0, 1, 0}, 1.0f)}, 0.5f);
+    EXPECT_EQ(half.position, (Position{2, 2, 0}));
+    EXPECT_NEAR(dot(half.orientation, rotation_about({0, 1, 0}, 0.5f)), 1.0f, 1e-7f);
+}
+
 }  // namespace
 }  // namespace lendulet
