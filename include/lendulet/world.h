@@ -313,7 +313,7 @@ public:
     double potential_energy() const;  // J, against gravity from the origin
     Momentum momentum() const;
     // Hash of all poses, p, L and warm-start impulses: equal for any number of workers, SIMD width, broad phase and
-    // compiler, native and WebAssembly.
+    // compiler, x86-64, 64-bit ARM and WebAssembly.
     uint64_t hash() const;
     std::span<const std::string> warnings() const;  // such as meshes that collide as hulls
     // Verifies the internal structures; used by tests. Empty where all is well, else a sentence.

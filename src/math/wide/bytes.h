@@ -37,6 +37,11 @@ LENDULET_FORCE_INLINE uint32_t byte_mask_bits(M mask) {
 #endif
 #if defined(__SSE2__)
     if constexpr (sizeof(M) == 16) return static_cast<uint32_t>(_mm_movemask_epi8((__m128i)mask));
+#elif defined(__aarch64__)
+    if constexpr (sizeof(M) == 16) {
+        const uint8x16_t bits = (uint8x16_t)mask & uint8x16_t{1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128};
+        return vaddv_u8(vget_low_u8(bits)) | static_cast<uint32_t>(vaddv_u8(vget_high_u8(bits))) << 8;
+    }
 #endif
 #if defined(__wasm_simd128__)
     if constexpr (sizeof(M) == 16) return static_cast<uint32_t>(__builtin_wasm_bitmask_i8x16((Bytes16)mask));
@@ -78,6 +83,12 @@ LENDULET_FORCE_INLINE Bytes16 to_bytes(Wide<float, 4> a, Wide<float, 4> b, Wide<
     __m128i low = _mm_packs_epi32(_mm_cvttps_epi32((__m128)a), _mm_cvttps_epi32((__m128)b));
     __m128i high = _mm_packs_epi32(_mm_cvttps_epi32((__m128)c), _mm_cvttps_epi32((__m128)d));
     return (Bytes16)_mm_packs_epi16(low, high);
+#elif defined(__aarch64__)
+    auto pair = [](Wide<float, 4> x, Wide<float, 4> y) {
+        int16x4_t low = vqmovn_s32(vcvtq_s32_f32((float32x4_t)x)), high = vqmovn_s32(vcvtq_s32_f32((float32x4_t)y));
+        return vqmovn_s16(vcombine_s16(low, high));
+    };
+    return (Bytes16)vcombine_s8(pair(a, b), pair(c, d));
 #else
     Bytes16 bytes;
     for (int i = 0; i < 4; ++i) {

@@ -17,6 +17,8 @@
 #include <immintrin.h>
 #elif defined(__SSE2__)
 #include <emmintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 namespace lendulet {
@@ -118,6 +120,8 @@ LENDULET_FORCE_INLINE F square_root(F a) {
 #endif
 #if defined(__SSE2__)
     if constexpr (sizeof(F) == 16) return (F)_mm_sqrt_ps((__m128)a);
+#elif defined(__aarch64__)
+    if constexpr (sizeof(F) == 16) return (F)vsqrtq_f32((float32x4_t)a);
 #endif
     F r;
     for (int i = 0; i < lanes_of<F>; ++i) r[i] = __builtin_sqrtf(a[i]);
@@ -157,6 +161,8 @@ requires(!std::is_same_v<M, bool>) LENDULET_FORCE_INLINE uint32_t mask_bits(M ma
 #endif
 #if defined(__SSE2__)
     if constexpr (sizeof(M) == 16) return static_cast<uint32_t>(_mm_movemask_ps((__m128)mask));
+#elif defined(__aarch64__)
+    if constexpr (sizeof(M) == 16) return vaddvq_u32((uint32x4_t)mask & uint32x4_t{1, 2, 4, 8});
 #endif
     uint32_t bits = 0;
     for (int i = 0; i < lanes_of<M>; ++i) bits |= (mask[i] ? 1u : 0u) << i;
