@@ -77,6 +77,13 @@ lendulet_result lendulet_set_limit(lendulet_world* world, lendulet_joint joint, 
     });
 }
 
+lendulet_result lendulet_set_joint_friction(lendulet_world* world, lendulet_joint joint, int32_t coordinate,
+                                            float friction) {
+    if (!world) return refuse_null("set_joint_friction");
+    return set_coordinate(joint, coordinate, "set_joint_friction",
+                          [&](auto... at) { return world->scene.world.set_friction(at..., friction); });
+}
+
 lendulet_result lendulet_set_body_type(lendulet_world* world, lendulet_body body, int32_t type) {
     if (!world) return refuse_null("set_body_type");
     World& w = world->scene.world;

@@ -22,8 +22,8 @@ extern "C" {
 
 lendulet_result lendulet_set_pose(lendulet_world* world, lendulet_body body, const float at[3],
                                   const float orientation[4]) {
-    return act_on(world, body, at && orientation, "set_pose",
-                  [&](RigidBodyRef b) { return b.set_pose(position(at), rotation(orientation)); });
+    if (!world || !at || !orientation) return refuse_null("set_pose");
+    return result_of(world->scene.world.set_pose(id_of(body), position(at), rotation(orientation)));
 }
 
 lendulet_result lendulet_set_velocity(lendulet_world* world, lendulet_body body, const float velocity[3]) {
@@ -60,6 +60,10 @@ lendulet_result lendulet_move_to(lendulet_world* world, lendulet_body body, cons
 
 lendulet_result lendulet_set_damping(lendulet_world* world, lendulet_body body, float linear, float angular) {
     return act_on(world, body, true, "set_damping", [&](RigidBodyRef b) { return b.set_damping(linear, angular); });
+}
+
+lendulet_result lendulet_set_mass(lendulet_world* world, lendulet_body body, float mass) {
+    return act_on(world, body, true, "set_mass", [&](RigidBodyRef b) { return b.set_mass(mass); });
 }
 
 lendulet_result lendulet_set_gravity_factor(lendulet_world* world, lendulet_body body, float factor) {

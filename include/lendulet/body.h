@@ -218,6 +218,12 @@ public:
     // was added as kinematic and has no mass), bad_collider (BodyType::fixed), non_finite (it is too fast for its
     // mass).
     Status set_type(BodyType type);
+    // Another mass, kg, 1e-9 .. 1e12, of a body that was added as dynamic: cargo that is loaded, fuel that is burnt.
+    // The moments of inertia change in proportion, the centre of mass and the velocities stay, momenta follow.
+    // Snapshots hold it. Wakes what touches it. Errors: non_finite (not finite, or too fast for that mass), bad_mass
+    // (out of range; the body was added as kinematic), bad_inertia (moments of inertia that have no inverse). On an
+    // error nothing has changed.
+    Status set_mass(float mass);
     // As in RigidBodyDef, from the next step on. Errors: non_finite, bad_material (a negative damping); nothing has
     // changed then. Kinematic bodies keep these for nothing.
     Status set_damping(float linear, float angular);  // 1/s

@@ -46,6 +46,8 @@ struct JointAxis {
     // Where the stiffness is not 0 the bounds give way: beyond them a spring (N/m or N m/rad) with damping (N s/m or
     // N m s/rad) pushes back, which never pulls outward.
     float limit_stiffness = 0.0f, limit_damping = 0.0f;
+    // Dry friction: while no motor drives the coordinate, its rate meets a force of at most this, N or N m, >= 0.
+    float friction = 0.0f;
 };
 
 // The coordinates of a six-degree joint. Place and turn of B's frame are measured in A's: the place of its origin along
@@ -75,6 +77,10 @@ struct JointDef {
     Limit limit{};
     Motor motor{};    // hinge, slider and distance
     Spring spring{};  // hinge, slider and distance
+    // Dry friction in the joint, >= 0: what its motion meets at most, N m for hinges and balls, N for sliders and
+    // distances; infinity holds it like a brake. It keeps still what less would move. A ball joint's acts about all
+    // axes at once, against the turning of its bodies to each other. A motor takes its place while it has a force.
+    float friction = 0.0f;
     // ball: half angle of the cone in which B's x axis stays about A's, rad; > pi: free
     float swing_limit = 4.0f;
     Limit twist_limit{};             // ball: turn of B about the x axis, rad

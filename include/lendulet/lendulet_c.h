@@ -129,9 +129,10 @@ lendulet_result lendulet_add_sphere(lendulet_world* world, float radius, const f
 lendulet_result lendulet_add_fixed_box(lendulet_world* world, const float half_extents[3], const float position[3],
                                        lendulet_body* out);
 lendulet_result lendulet_remove_body(lendulet_world* world, lendulet_body body);
-/* Of bodies that move: see RigidBodyRef. Orientations are x y z w, velocities m/s and rad/s. */
+/* Of any body, static ones too: see World::set_pose(). Orientations are x y z w. */
 lendulet_result lendulet_set_pose(lendulet_world* world, lendulet_body body, const float at[3],
                                   const float orientation[4]);
+/* Of bodies that move: see RigidBodyRef. Velocities are in m/s and rad/s. */
 lendulet_result lendulet_set_velocity(lendulet_world* world, lendulet_body body, const float velocity[3]);
 lendulet_result lendulet_set_angular_velocity(lendulet_world* world, lendulet_body body, const float velocity[3]);
 /* N s at a point of the world. */
@@ -144,6 +145,8 @@ lendulet_result lendulet_apply_torque(lendulet_world* world, lendulet_body body,
 /* Gives a kinematic body the velocities by which the next lendulet_step() takes it there. */
 lendulet_result lendulet_move_to(lendulet_world* world, lendulet_body body, const float at[3],
                                  const float orientation[4]);
+/* kg, of a body that was added as dynamic. */
+lendulet_result lendulet_set_mass(lendulet_world* world, lendulet_body body, float mass);
 /* 1/s; times the world's gravity. */
 lendulet_result lendulet_set_damping(lendulet_world* world, lendulet_body body, float linear, float angular);
 lendulet_result lendulet_set_gravity_factor(lendulet_world* world, lendulet_body body, float factor);
@@ -283,6 +286,9 @@ lendulet_result lendulet_set_spring(lendulet_world* world, lendulet_joint joint,
                                     const lendulet_spring* spring);
 lendulet_result lendulet_set_limit(lendulet_world* world, lendulet_joint joint, int32_t coordinate, float lower,
                                    float upper);
+/* What the joint's motion meets at most, N m or N: see World::set_friction(). Of a ball joint with LENDULET_ONLY. */
+lendulet_result lendulet_set_joint_friction(lendulet_world* world, lendulet_joint joint, int32_t coordinate,
+                                            float friction);
 /* LENDULET_KINEMATIC or LENDULET_DYNAMIC: see RigidBodyRef::set_type(). */
 lendulet_result lendulet_set_body_type(lendulet_world* world, lendulet_body body, int32_t type);
 lendulet_result lendulet_remove_joint(lendulet_world* world, lendulet_joint joint);

@@ -145,6 +145,13 @@ public:
     Result<BodyId> add_static_body(const StaticBodyDef& def);
     // Removes the body with its colliders and joints. Errors: stale_id, wrong_world.
     Status remove_body(BodyId id);
+    // Puts any body somewhere, static ones too: as RigidBodyRef::set_pose() for one that moves. Quaternions within 1e-3
+    // of unit length are normalised. What touches the body, what it comes to lie in and what is joined to it wakes; its
+    // contacts end and begin anew, with overlap undone as any other, and nothing is carried along: what is to carry
+    // others is a kinematic body. Snapshots hold where it is. Cost: O(static colliders) in the next step, so this is
+    // for now and then. Errors: stale_id, wrong_world, non_finite, bad_rotation, out_of_world. On an error nothing has
+    // changed.
+    Status set_pose(BodyId id, Position position, Quat orientation);
     // Another number of the user's own for a body; snapshots do not hold it. Errors: stale_id, wrong_world.
     Status set_user_data(BodyId id, uint64_t user_data);
     // Errors: stale_id, wrong_world, bad_joint, no_dynamic_body, non_finite.
@@ -158,6 +165,12 @@ public:
     Status set_motor(JointId id, Coordinate coordinate, Motor motor);
     Status set_spring(JointId id, Spring spring);
     Status set_spring(JointId id, Coordinate coordinate, Spring spring);
+    // Another friction from the next step on (JointDef::friction): of a hinge, slider, distance or ball joint, or of
+    // one coordinate of a six-degree joint; N m or N, >= 0. Wakes the joint's bodies. Errors: stale_id, wrong_world,
+    // non_finite (not a number), bad_joint (a joint or coordinate without such, a negative one). On an error nothing
+    // has changed.
+    Status set_friction(JointId id, float friction);
+    Status set_friction(JointId id, Coordinate coordinate, float friction);
     // Other bounds from the next step on: of a hinge, slider or distance joint, of one coordinate of a six-degree
     // joint, or of a ball joint: its twist (Coordinate::about_x) and its cone (Coordinate::swing, whose upper bound is
     // the half angle). Wakes the joint's bodies. Errors: stale_id, wrong_world, non_finite, bad_joint (a joint or
@@ -185,7 +198,7 @@ public:
     const RigidBodyRef get(BodyId id) const;
     StaticBodyRef get_static(BodyId id) const;  // any body
     JointState joint(JointId id) const;
-    // The joint as it was defined, with the motors and springs that it has now.
+    // The joint as it was defined, with the motors, springs, friction and bounds that it has now.
     JointDef joint_def(JointId id) const;
 
     // Takes memory ahead for worlds of so many bodies, contacts and joints, and touches it: the first steps then need
@@ -208,9 +221,9 @@ public:
     uint64_t step_count() const;
 
     // --- snapshots
-    // All that a world's future depends on but shapes, masses and settings: poses, momenta, forces, sleep, what setters
-    // have changed of bodies, colliders and joints, joints' impulses, contacts and what the narrow phase keeps of them,
-    // gravity, time. Equal states give equal bytes. About 100 bytes a body and 250 a contact; O(n).
+    // All that a world's future depends on but shapes, masses as added and settings: poses, momenta, forces, sleep,
+    // what setters have changed of bodies, colliders and joints, joints' impulses, contacts and what the narrow phase
+    // keeps of them, gravity, time. Equal states give equal bytes. About 100 bytes a body and 250 a contact; O(n).
     std::vector<uint8_t> snapshot() const;
     // Goes back to a snapshot of this world, or of one that was built alike (bodies, joints, settings that results
     // depend on; another number of workers, width or broad phase will do): from there on it computes the same bits.

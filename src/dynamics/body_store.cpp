@@ -38,11 +38,40 @@ void BodyStore::copy(const BodyStore& o) {
     copy_array(o.momenta, momenta);
     copy_array(o.mass, mass);
     copy_array(o.own_mass, own_mass);
+    copy_array(o.first_pose, first_pose);
+    copy_array(o.first_mass, first_mass);
     copy_array(o.forces, forces);
     copy_array(o.change, change);
     copy_array(o.info, info);
     copy_array(o.principal, principal);
     name = o.name;
+}
+
+void BodyStore::alter_mass(uint32_t slot, const BodyMass& other) {
+    const Vec3 v = velocity(slot), w = angular_velocity(slot);
+    if (!info[slot].altered) {
+        first_mass.resize(slots.capacity());
+        first_mass[slot] = mass_as_dynamic(slot);
+        info[slot].altered = true;
+    }
+    if (info[slot].type == BodyType::kinematic) {
+        own_mass[slot] = other;
+        return;
+    }
+    change[slot].L = (other.mass * mass[slot].inverse_mass) * change[slot].L;
+    mass[slot] = other;
+    momenta[slot].p = other.mass * v;
+    momenta[slot].L = inertia_times(slot, w);
+    momenta[slot].p_low = {};
+}
+
+void BodyStore::alter_pose(uint32_t slot, const Pose& other) {
+    if (!info[slot].altered) {
+        first_pose.resize(slots.capacity());
+        first_pose[slot] = pose[slot];
+        info[slot].altered = true;
+    }
+    pose[slot] = other;
 }
 
 void BodyStore::set_type(uint32_t slot, BodyType type) {

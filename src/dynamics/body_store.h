@@ -58,6 +58,7 @@ struct BodyInfo {
     bool massless = false;       // was added as kinematic
     bool bullet = false;         // may not pass through moving bodies either
     bool stopped = false;        // at a time of impact, in the last step
+    bool altered = false;        // a static body that was moved, or one whose mass was set: see first_pose, first_mass
     uint32_t first_collider = no_slot;
     int32_t collider_count = 0;
     int32_t solver_index = 0;  // in this step's SolverBodies
@@ -70,6 +71,9 @@ struct BodyStore {
     Array<BodyMomenta> momenta;  // kinematic bodies: p holds velocity, L angular velocity
     Array<BodyMass> mass;
     Array<BodyMass> own_mass;  // of kinematic bodies that are dynamic by themselves; may be shorter
+    // As they were added, of bodies that were altered since; may be shorter.
+    Array<Pose> first_pose;
+    Array<BodyMass> first_mass;
     Array<BodyForces> forces;
     Array<BodyChange> change;
     Array<BodyInfo> info;
@@ -82,6 +86,8 @@ struct BodyStore {
           momenta(memory),
           mass(memory),
           own_mass(memory),
+          first_pose(memory),
+          first_mass(memory),
           forces(memory),
           change(memory),
           info(memory),
@@ -107,6 +113,16 @@ struct BodyStore {
     const BodyMass& mass_as_dynamic(uint32_t slot) const {
         return info[slot].type == BodyType::kinematic && !info[slot].massless ? own_mass[slot] : mass[slot];
     }
+    // What those were as the body was added, which it is that a snapshot's body has to agree with.
+    const BodyMass& mass_as_added(uint32_t slot) const {
+        return info[slot].altered && info[slot].type != BodyType::fixed ? first_mass[slot] : mass_as_dynamic(slot);
+    }
+    const Pose& pose_as_added(uint32_t slot) const {
+        return info[slot].altered && info[slot].type == BodyType::fixed ? first_pose[slot] : pose[slot];
+    }
+    // Gives a body that has a mass another one, its velocities stay; a static body another pose. Both keep the first.
+    void alter_mass(uint32_t slot, const BodyMass& other);
+    void alter_pose(uint32_t slot, const Pose& other);
     // Makes a body with a mass kinematic or dynamic; its velocities stay.
     void set_type(uint32_t slot, BodyType type);
     static size_t bytes_per_body();

@@ -26,11 +26,17 @@ struct JointInfo {
     Limit limit{};
     Motor motor{};
     Spring spring{};
+    float friction = 0.0f;  // N m or N, at most
     float swing_limit = 4.0f;
     Limit twist_limit{};
     int32_t axes = -1;  // six_degrees and distance: index in JointStore::axes
     float break_force = std::numeric_limits<float>::infinity(), break_torque = std::numeric_limits<float>::infinity();
     uint64_t user_data = 0;
+    // What drives the one coordinate, or a ball joint about all axes.
+    Motor drive() const {
+        if (type == JointType::ball) return {0.0f, friction};
+        return motor.max_force > 0.0f ? motor : Motor{0.0f, friction};
+    }
     bool breaks() const { return minimum(break_force, break_torque) < std::numeric_limits<float>::infinity(); }
 };
 
@@ -43,7 +49,8 @@ struct JointAxesInfo {
 
 // What the solver leaves of a joint: impulses on B of the last substep. Linear ones along world axes (sliders: y and z
 // of the joint frame), angular ones along the joint frame's y, z and x axes, each as many as the joint locks; N s and
-// N m s. While a joint is solved, the world holds them in its JointRecord.
+// N m s; those of a ball joint are its friction's, along world axes. While a joint is solved, the world holds them in
+// its JointRecord.
 struct JointImpulses {
     float linear[3]{}, angular[3]{};
     float limit[2]{};  // of the limited coordinate, or of a ball joint's swing and twist

@@ -64,7 +64,8 @@ void ImpactJoints::add_joint(const SolverBodies& bodies, const JointRecord& r) {
     const JointEnd A = end_of(bodies, row.a, r.arm_a, r.frame_a), B = end_of(bodies, row.b, r.arm_b, r.frame_b);
     const JointAxesRecord* six = r.type == JointClass::six_degrees ? joints_.axes + r.axes : nullptr;
     const bool slider = r.type == JointClass::slider || r.type == JointClass::driven_slider, along = slider || six;
-    const bool ball = r.type == JointClass::ball || r.type == JointClass::limited_ball;
+    const bool ball =
+        r.type == JointClass::ball || r.type == JointClass::limited_ball || r.type == JointClass::rubbing_ball;
     const Mat3 axes = rotation_matrix(A.frame);
     const Vec3 axis[3] = {axes.x, axes.y, axes.z};
     // Both bodies get the impulse at one point.

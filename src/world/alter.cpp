@@ -94,6 +94,70 @@ Status RigidBodyRef::set_type(BodyType type) {
     return {};
 }
 
+Status RigidBodyRef::set_mass(float mass) {
+    constexpr const char* call = "set_mass";
+    const uint32_t body = slot();
+    BodyStore& bodies = world_->bodies;
+    if (!is_finite(mass)) return Error{ErrorCode::non_finite, std::string(call) + ": mass must be finite"};
+    if (Status s = check_mass(mass, call); !s) return s;
+    if (bodies.info[body].massless)
+        return Error{ErrorCode::bad_mass, std::string(call) + ": it was added as kinematic, without mass"};
+    // In proportion to the body as it was added, so that the same mass gives the same body.
+    const BodyMass& first = bodies.mass_as_added(body);
+    const float times = mass == first.mass ? 1.0f : mass / first.mass;
+    BodyMass now = first;
+    now.mass = mass;
+    now.inverse_mass = 1.0f / mass;
+    now.inertia = times * first.inertia;
+    now.inverse_inertia = {1.0f / now.inertia.x, 1.0f / now.inertia.y, 1.0f / now.inertia.z};
+    if (!can_be_inverted(now.inertia) || !is_finite(now.inverse_inertia))
+        return Error{ErrorCode::bad_inertia,
+                     std::string(call) + ": with " + text(mass) + " kg its moments of inertia would have no inverse"};
+    if (!is_finite(mass * velocity()) || !is_finite(max_component(now.inertia) * angular_velocity()))
+        return Error{ErrorCode::non_finite, std::string(call) + ": momentum and angular momentum must be finite"};
+    wake();
+    wake_touching(*world_, body);
+    bodies.alter_mass(body, now);
+    if (body < world_->island_loads.size()) world_->island_loads[body] = {};
+    world_->joints_changed = world_->joint_groups_changed = true;
+    return {};
+}
+
+namespace {
+
+// A static body elsewhere: as one that goes and one that comes.
+void move_static(WorldData& world, uint32_t body, const Pose& pose) {
+    wake_touching(world, body);  // what it leaves behind
+    world.joints.for_each_of(body, [&](uint32_t joint) {
+        wake_body(world, world.joints.info[joint].body_a);
+        wake_body(world, world.joints.info[joint].body_b);
+    });
+    world.bodies.alter_pose(body, pose);
+    world.bodies.info[body].placed_at = static_cast<uint32_t>(world.steps);
+    for (uint32_t c = world.bodies.info[body].first_collider; c != no_slot; c = world.colliders.info[c].next) {
+        world.pairs.for_each_of(c, [&](uint32_t number) { forget_pair(world, number); });
+        world.box_place[c] = no_box;
+        world.colliders.info[c].boxed = false;
+        world.query_scene.changed(c);
+        wake_newly_met(world, c);
+    }
+    world.fixed_changed = world.joints_changed = world.continuous.colliders_changed = true;
+}
+
+}  // namespace
+
+Status World::set_pose(BodyId id, Position position, Quat orientation) {
+    constexpr const char* call = "set_pose";
+    WorldData& world = data();
+    if (!world.bodies.alive(id)) return no_such(world.bodies.slots, id.generation, call, "body");
+    if (world.bodies.info[id.index].type != BodyType::fixed) return get(id).set_pose(position, orientation);
+    Result<Quat> q = unit_quaternion(orientation, call);
+    if (!q) return q.error();
+    if (Status s = valid_position(position, call); !s) return s;
+    move_static(world, id.index, {position, q.value()});
+    return {};
+}
+
 void set_collider_filter(WorldData& world, uint32_t collider, const CollisionFilter& filter) {
     world.colliders.info[collider].filter = filter;
     world.query_scene.changed(collider);

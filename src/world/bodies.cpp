@@ -10,7 +10,6 @@
 namespace lendulet {
 namespace {
 
-constexpr float min_mass = 1e-9f, max_mass = 1e12f;
 constexpr size_t max_name = 255;
 
 // A collider that was checked and is ready to be stored.
@@ -121,10 +120,7 @@ Result<MassProperties> body_mass(const RigidBodyDef& def, const std::vector<Chec
         total.centre = *def.centre_of_mass;
     }
     if (def.inertia) total.inertia = *def.inertia;
-    if (!(total.mass >= min_mass && total.mass <= max_mass))
-        return refused(
-            ErrorCode::bad_mass, call,
-            "mass is " + text(total.mass) + " kg, must be between " + text(min_mass) + " and " + text(max_mass));
+    if (Status s = check_mass(total.mass, call); !s) return s.error();
     return total;
 }
 
@@ -142,7 +138,7 @@ Status set_mass(BodyStore& bodies, uint32_t slot, const MassProperties& m, Princ
 
 // Positive, and each no larger than the other two together (it is a sum of squares of distances).
 Status check_inertia(Vec3 i, const char* call) {
-    bool positive = is_finite(i) && min_component(i) > 1e-36f;  // below, the inverse would be infinite
+    const bool positive = can_be_inverted(i);
     float sum = i.x + i.y + i.z, most = max_component(i);
     if (!positive || 2.0f * most > sum * (1.0f + 1e-5f))
         return refused(ErrorCode::bad_inertia, call,

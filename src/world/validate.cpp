@@ -76,6 +76,14 @@ Result<Surface> make_surface(const WorldConfig& config, const Material& m, const
     return with_defaults(m, config.friction, config.restitution);
 }
 
+Status check_mass(float mass, const char* call) {
+    constexpr float least = 1e-9f, most = 1e12f;
+    if (mass >= least && mass <= most) return {};
+    return Error{ErrorCode::bad_mass, std::string(call) + ": mass is " + text(mass) + " kg, must be between " +
+                                          text(least) + " and " + text(most)};
+}
+bool can_be_inverted(Vec3 inertia) { return is_finite(inertia) && min_component(inertia) > 1e-36f; }
+
 Status check_events(Events events, const char* call) {
     if (events <= Events::all) return {};
     return Error{ErrorCode::bad_collider, std::string(call) + ": such events are none"};

@@ -390,6 +390,11 @@ const char* test_changes_and_events(void) {
     EXPECT(lendulet_set_motor(world, joint, LENDULET_ONLY, 0.0f, 0.0f) == 0);
     EXPECT(lendulet_set_spring(world, joint, LENDULET_ONLY, &servo) == 0 &&
            lendulet_set_spring(world, joint, LENDULET_ONLY, NULL) < 0);
+    EXPECT(lendulet_set_joint_friction(world, joint, LENDULET_ONLY, 2.0f) == 0);
+    EXPECT(lendulet_set_joint_friction(world, joint, LENDULET_ONLY, -2.0f) < 0 &&
+           lendulet_set_joint_friction(world, joint, LENDULET_ALONG_X, 2.0f) < 0 &&
+           lendulet_set_joint_friction(NULL, joint, LENDULET_ONLY, 2.0f) < 0);
+    EXPECT(lendulet_set_joint_friction(world, joint, LENDULET_ONLY, 0.0f) == 0);
     EXPECT(lendulet_set_limit(world, joint, LENDULET_ONLY, -0.1f, 0.1f) == 0);
     EXPECT(lendulet_set_limit(world, joint, LENDULET_ONLY, 0.2f, 0.1f) < 0);
     EXPECT(run(world, 120) && lendulet_read_joints(world, &states) == 1 && states[0].value < 0.12f);
@@ -444,6 +449,10 @@ const char* test_steering(void) {
     EXPECT(lendulet_read_body(world, ball, &state) == 0);
     EXPECT(state.position[0] == 5.0f && state.orientation[1] == 1.0f &&
            fabsf(state.angular_velocity[1] - 3.0f) < 1e-5f);
+    EXPECT(lendulet_set_mass(world, ball, 2.0f) == 0 && lendulet_set_mass(world, bodies[0], 2.0f) < 0 &&
+           lendulet_set_mass(world, ball, 0.0f) < 0);
+    EXPECT(lendulet_read_body(world, ball, &state) == 0 && state.mass == 2.0f);
+    EXPECT(lendulet_set_mass(world, ball, 500.0f) == 0);
     belt.surface_velocity[2] = 0.0f;
     EXPECT(lendulet_set_material(world, shapes[0], &belt) == 0);
     EXPECT(lendulet_set_gravity_factor(world, ball, 0.0f) == 0 && lendulet_set_damping(world, ball, -1.0f, 0.0f) < 0);

@@ -8,10 +8,11 @@
 namespace lendulet::test {
 namespace {
 
-constexpr JointClass all_classes[] = {JointClass::ball,          JointClass::limited_ball, JointClass::hinge,
-                                      JointClass::limited_hinge, JointClass::driven_hinge, JointClass::slider,
-                                      JointClass::driven_slider, JointClass::fixed};
+constexpr JointClass all_classes[] = {JointClass::ball,   JointClass::limited_ball,  JointClass::rubbing_ball,
+                                      JointClass::hinge,  JointClass::limited_hinge, JointClass::driven_hinge,
+                                      JointClass::slider, JointClass::driven_slider, JointClass::fixed};
 bool slides(JointClass type) { return type == JointClass::slider || type == JointClass::driven_slider; }
+bool is_limited_ball(JointClass type) { return type == JointClass::limited_ball || type == JointClass::rubbing_ball; }
 bool turns_within_limits(JointClass type) {
     return type == JointClass::limited_hinge || type == JointClass::driven_hinge;
 }
@@ -94,11 +95,11 @@ TEST(JointRows, LockedRowsStayLocked) {
             if (type == JointClass::hinge || turns_within_limits(type)) {
                 ASSERT_LT(rig.swing(0), 2e-4f);
             }
-            if (turns_within_limits(type) || type == JointClass::limited_ball) {
+            if (turns_within_limits(type) || is_limited_ball(type)) {
                 ASSERT_LT(rig.angle(0), 0.5f + 5e-3f);
                 ASSERT_GT(rig.angle(0), -0.4f - 5e-3f);
             }
-            if (type == JointClass::limited_ball) {
+            if (is_limited_ball(type)) {
                 ASSERT_LT(rig.swing(0), 0.5f + 5e-3f);
             }
         }

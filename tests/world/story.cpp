@@ -137,6 +137,7 @@ void Story::add_joint(World& world) {
         def.limit = limited ? Limit{-0.5f, 0.5f} : Limit{-2, 2};
     if (type == JointType::ball && limited) def.swing_limit = 0.6f, def.twist_limit = {-0.4f, 0.4f};
     if (driven) def.motor = {speed, 50.0f};
+    if (driven && type == JointType::ball) def.friction = 0.1f * stiffness;
     if (sprung)
         def.spring = {.stiffness = stiffness, .damping = 5.0f, .target = type == JointType::distance ? 1.0f : 0};
     if (type == JointType::six_degrees) {
@@ -157,6 +158,8 @@ void Story::drive(World& world) {
         world.set_motor(id, Coordinate::about_y, {speed, 30.0f}).value();
         return;
     }
+    if (world.joint(id).type == JointType::ball)
+        world.set_friction(id, speed > 0.0f ? 0.01f * stiffness : 0.0f).value();
     if (once_in(2)) (void)world.set_motor(id, {speed, 100.0f});
     else (void)world.set_spring(id, {.stiffness = stiffness, .damping = 3.0f, .target = 0.5f});
 }

@@ -5,7 +5,8 @@
 // Which rows a joint has is its class. Locked rows (three linear ones at the anchor, or two across a slider's axis, and
 // up to three angular ones) are solved together, directly; then bounded rows (a hinge's angle or slider's travel with
 // limit, motor and spring, or a ball joint's swing and twist) with the locked ones held. What a joint does not use has
-// no place in its row: a hinge is free, limited or driven, each a class of its own. A six-degree joint, of which a
+// no place in its row: a hinge is free, limited or driven, each a class of its own; a ball joint with friction resists
+// turning about all axes before its limits are looked at. A six-degree joint, of which a
 // distance joint is a case, has all rows that there can be; which of them act is data, in a second record.
 #pragma once
 
@@ -16,6 +17,7 @@ namespace lendulet {
 enum class JointClass : int32_t {
     ball,
     limited_ball,
+    rubbing_ball,
     hinge,
     limited_hinge,
     driven_hinge,
@@ -24,7 +26,7 @@ enum class JointClass : int32_t {
     fixed,
     six_degrees
 };
-inline constexpr int joint_classes = 9;
+inline constexpr int joint_classes = 10;
 
 inline constexpr float unlimited = 1e30f;  // bound of a coordinate that has none; large, but finite in sums
 
@@ -37,7 +39,7 @@ struct alignas(64) JointRecord {
     float motor_velocity;  // target, m/s or rad/s
     float frame_a[4];      // rotation from the joint frame to A's principal frame
     float frame_b[4];
-    float motor_force;       // largest, N or N m
+    float motor_force;       // largest, N or N m; a ball joint's friction
     float relaxation;        // share of its solution that a joint takes in a pass, 0 .. 1; set by the solver
     float lower, upper;      // bounds of angle, travel or twist; +-unlimited where there are none
     int32_t body_a, body_b;  // solver bodies; at least one is moved by constraints
@@ -45,7 +47,7 @@ struct alignas(64) JointRecord {
     uint16_t flags, old_flags;  // joint_split and joint_alone, of this step and the one before; set by the solver
     float stiffness, damping, target, spring_force;  // spring_force: largest, N or N m
     float linear[3], limit_0;   // impulses on B: locked linear rows; limit, or a ball joint's swing
-    float angular[3], limit_1;  // locked angular rows; a ball joint's twist limit
+    float angular[3], limit_1;  // locked angular rows, or a ball joint's friction along world axes; its twist limit
     float motor, spring;
     int32_t axes;  // six_degrees: its JointAxesRecord
     float unused1;

@@ -31,10 +31,10 @@ template <int W>
 constexpr JointTable make_joint_table() {
     return {W,
             {make_kernels_of<W, JointClass::ball>(), make_kernels_of<W, JointClass::limited_ball>(),
-             make_kernels_of<W, JointClass::hinge>(), make_kernels_of<W, JointClass::limited_hinge>(),
-             make_kernels_of<W, JointClass::driven_hinge>(), make_kernels_of<W, JointClass::slider>(),
-             make_kernels_of<W, JointClass::driven_slider>(), make_kernels_of<W, JointClass::fixed>(),
-             make_kernels_of<W, JointClass::six_degrees>()}};
+             make_kernels_of<W, JointClass::rubbing_ball>(), make_kernels_of<W, JointClass::hinge>(),
+             make_kernels_of<W, JointClass::limited_hinge>(), make_kernels_of<W, JointClass::driven_hinge>(),
+             make_kernels_of<W, JointClass::slider>(), make_kernels_of<W, JointClass::driven_slider>(),
+             make_kernels_of<W, JointClass::fixed>(), make_kernels_of<W, JointClass::six_degrees>()}};
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ struct JointChange {
     using F = Wide<float, W>;
     F locked[JointShape<C>::locked];
     F bounded[JointShape<C>::bounded > 0 ? JointShape<C>::bounded : 1];
+    [[no_unique_address]] std::conditional_t<JointShape<C>::rubs, Vec3T<F>, NoPart<0>> rub;
 };
 
 // Total of row impulses as vectors: linear at the shared point, angular.
@@ -44,6 +45,7 @@ LENDULET_FORCE_INLINE void to_vectors(const JointGeometry<W, C>& o, const JointC
         for (int j = 0; j < S::angular; ++j) angular = angular + x.locked[S::linear + j] * o.direction[j];
     if constexpr (S::bounded > 0 && !S::slider)
         for (int j = 0; j < S::bounded; ++j) angular = angular + x.bounded[j] * o.direction[S::limited_ball ? j : 2];
+    if constexpr (S::rubs) angular = angular + x.rub;
 }
 
 // The impulses that the row holds.
@@ -55,6 +57,7 @@ LENDULET_FORCE_INLINE JointChange<W, C> held_impulses(const JointRow<W, C>& c) {
     if constexpr (S::bounded > 0)
         for (int j = 0; j < S::bounded; ++j) x.bounded[j] = c.row[j].limit;
     if constexpr (S::driven) x.bounded[0] = x.bounded[0] + c.motor + c.spring_sum;
+    if constexpr (S::rubs) x.rub = c.rub;
     if constexpr (S::six)
         for (int j = 0; j < S::bounded; ++j) x.bounded[j] = x.bounded[j] + (c.row[j].motor + c.row[j].spring_sum);
     return x;
@@ -241,6 +244,7 @@ LENDULET_FORCE_INLINE void solve_bounded(JointRow<W, C>& c, const JointGeometry<
     BoundedResponse<W, C> r[S::bounded];
     factor_bounded<W, C>(o, response, mass, r);
     JointChange<W, C> more;
+    if constexpr (S::rubs) more.rub = zero_vector<F>();
     F impulse[S::locked];
     for (int i = 0; i < S::locked; ++i) more.locked[i] = zero, impulse[i] = c.impulse[i];
     for (int j = 0; j < S::bounded; ++j) {
@@ -272,6 +276,7 @@ LENDULET_FORCE_INLINE void solve_bounded(JointRow<W, C>& c, const JointGeometry<
     for (int j = 0; j < S::bounded; ++j) take(x.bounded[j], more.bounded[j]);
 }
 
+#include "solver/joints/rubbing.inl"
 #include "solver/joints/six_passes.inl"
 
 // Multiplies what the row holds, as the bodies' repeated changes were.
@@ -288,6 +293,7 @@ LENDULET_FORCE_INLINE void scale_impulses(JointRow<W, C>& c, Wide<float, W> s) {
     if constexpr (S::six)
         for (auto& row : c.row) row.motor = s * row.motor, row.spring_sum = s * row.spring_sum;
     if constexpr (S::driven) c.motor = s * c.motor, c.spring_sum = s * c.spring_sum;
+    if constexpr (S::rubs) c.rub = s * c.rub;
 }
 
 // Replaces the impulses that the bodies' velocities hold by those on the present arms and axes.
@@ -392,11 +398,13 @@ LENDULET_FORCE_INLINE void joint_pass(JointRow<W, C>& c, const JointGroup& g, So
     JointChange<W, C> x;
     if constexpr (S::bounded > 0)
         for (F& b : x.bounded) b = splat<F>(0.0f);
+    if constexpr (S::rubs) x.rub = zero_vector<F>();
     solve_locked<W, C, biased>(c, o, mass, pair, k, g.split, x.locked);
     Vec3T<F> linear, angular;
     to_vectors<W, C>(o, x, linear, angular);
     pair.push(o.ra, o.rb, linear, angular);
     if constexpr (S::bounded > 0) {
+        if constexpr (S::rubs) solve_rubbing<W, C, biased>(c, o, response, mass, pair, k, g.split, x);
         if constexpr (S::six) solve_axes<W, biased>(c, o, response, mass, pair, k, g.split, x);
         else solve_bounded<W, C, biased>(c, o, response, mass, pair, k, g.split, x);
         to_vectors<W, C>(o, x, linear, angular);

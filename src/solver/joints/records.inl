@@ -50,6 +50,7 @@ LENDULET_FORCE_INLINE void load_impulses(JointRow<W, C>& c, [[maybe_unused]] con
         c.motor = scale * drive.q[0];
         c.spring = scale * drive.q[1];
     }
+    if constexpr (S::rubs) c.rub = scale * angular.vector();
 }
 
 template <int W, JointClass C>
@@ -89,6 +90,7 @@ LENDULET_FORCE_INLINE void load_joint(JointRow<W, C>& c, JointFrames<W, C>& fram
         c.motor_force = bounds.q[0];
         c.stiffness = spring.q[0], c.damping = spring.q[1], c.target = spring.q[2], c.spring_force = spring.q[3];
     }
+    if constexpr (S::rubs) c.most_torque = bounds.q[0];
     if (with_impulses) load_impulses<W, C>(c, g, records, index, live);
 }
 
@@ -159,6 +161,7 @@ LENDULET_FORCE_INLINE void prepare_joint(JointRow<W, C>& c, const JointFrames<W,
         if constexpr (S::bounded > 0)
             for (auto& row : c.row) row.limit = splat<F>(scale) * row.limit;
         if constexpr (S::driven) c.motor = splat<F>(scale) * c.motor;
+        if constexpr (S::rubs) c.rub = splat<F>(scale) * c.rub;
         if constexpr (S::six)
             for (auto& row : c.row) row.motor = splat<F>(scale) * row.motor;
     }
@@ -219,6 +222,7 @@ void store_joints(const JointGroup& g, JointRecord* records, int begin, int end)
             if constexpr (S::bounded > 0) quads[0][3] = c.row[0].limit;
             if constexpr (S::bounded > 1) quads[1][3] = c.row[1].limit;
         }
+        if constexpr (S::rubs) quads[1][0] = c.rub.x, quads[1][1] = c.rub.y, quads[1][2] = c.rub.z;
         if constexpr (S::driven) quads[2][0] = c.motor, quads[2][1] = c.spring;
         Vec3T<F> linear = c.linear_sum, angular = zero_vector<F>();
         if constexpr (S::directions > 0) angular = c.angular_sum;

@@ -10,7 +10,8 @@ struct JointShape {
     static constexpr bool slider = C == JointClass::slider || C == JointClass::driven_slider;
     static constexpr bool hinge =
         C == JointClass::hinge || C == JointClass::limited_hinge || C == JointClass::driven_hinge;
-    static constexpr bool limited_ball = C == JointClass::limited_ball;
+    static constexpr bool rubs = C == JointClass::rubbing_ball;  // see rubbing.inl
+    static constexpr bool limited_ball = C == JointClass::limited_ball || rubs;
     static constexpr bool six = C == JointClass::six_degrees;  // which rows act is data, see six_degrees.inl
     static constexpr bool along = slider || six;               // linear rows along the joint frame's axes on A
     static constexpr int linear = slider ? 2 : 3;              // locked rows
@@ -61,6 +62,13 @@ struct JointDrive {
     F spring_sum;  // and of all that is in the bodies' velocities
 };
 
+// Friction about all axes.
+template <int W>
+struct JointRub {
+    Wide<float, W> most_torque;
+    Vec3T<Wide<float, W>> rub;  // angular impulse on B, world axes
+};
+
 // Rows of a six-degree joint. Flags are 1 or 0.
 template <int W>
 struct JointSix {
@@ -85,7 +93,8 @@ struct alignas(64) JointRow
       std::conditional_t<
           JointShape<C>::six, JointSix<W>,
           std::conditional_t<(JointShape<C>::bounded > 0), JointBounds<W, JointShape<C>::bounded>, NoPart<2>>>,
-      std::conditional_t<JointShape<C>::driven, JointDrive<W>, NoPart<3>> {
+      std::conditional_t<JointShape<C>::driven, JointDrive<W>, NoPart<3>>,
+      std::conditional_t<JointShape<C>::rubs, JointRub<W>, NoPart<4>> {
     using F = Wide<float, W>;
     int32_t a[W], b[W];                    // eight times the body's index, as in contact rows
     Vec3T<F> ra0, rb0, gap0;               // arms of the two anchors and the way from A's to B's, ...

@@ -43,6 +43,7 @@ Status check_axis(const JointAxis& axis, const std::string& name, float most, co
     if (Status s = check_limit(axis.limit, "limit " + name, most, call); !s) return s;
     if (Status s = check_motor(axis.motor, call); !s) return s;
     if (Status s = check_spring(axis.spring, most > 0.0f, call); !s) return s;
+    if (Status s = check_joint_friction(axis.friction, call); !s) return s;
     if (!is_finite(axis.limit_stiffness) || !is_finite(axis.limit_damping))
         return refused_joint(ErrorCode::non_finite, call, "limit " + name + ": stiffness and damping must be numbers");
     if (axis.limit_stiffness < 0.0f || axis.limit_damping < 0.0f)
@@ -51,7 +52,7 @@ Status check_axis(const JointAxis& axis, const std::string& name, float most, co
 }
 
 bool is_used(const JointAxis& axis) {
-    return !axis.limit.free() || axis.motor.max_force > 0.0f || axis.spring.stiffness > 0.0f ||
+    return !axis.limit.free() || axis.motor.max_force > 0.0f || axis.friction > 0.0f || axis.spring.stiffness > 0.0f ||
            axis.spring.damping > 0.0f;
 }
 
@@ -123,7 +124,15 @@ Status check_spring(const Spring& spring, bool turns, const char* call) {
     return {};
 }
 
+Status check_joint_friction(float friction, const char* call) {
+    if (friction != friction) return refused_joint(ErrorCode::non_finite, call, "the friction must be a number");
+    if (friction < 0.0f) return bad_joint(call, "the friction is " + text(friction) + ", must not be negative");
+    return {};
+}
+
 Status check_rows(const JointDef& def, const char* call) {
+    if (def.type != JointType::fixed && def.type != JointType::six_degrees)
+        if (Status s = check_joint_friction(def.friction, call); !s) return s;
     switch (def.type) {
         case JointType::fixed:
             break;

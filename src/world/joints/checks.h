@@ -17,6 +17,7 @@ Result<Transform> check_frame(const Transform& frame, const char* name, const ch
 Status check_motor(const Motor& motor, const char* call);
 // `turns`: of an angle, else of a length.
 Status check_spring(const Spring& spring, bool turns, const char* call);
+Status check_joint_friction(float friction, const char* call);
 // The limits, motors and springs that joints of that type read.
 Status check_rows(const JointDef& def, const char* call);
 

@@ -37,7 +37,7 @@ Result<JointAxis*> axis_of(WorldData& world, JointId id, Coordinate coordinate, 
     const int row = static_cast<int>(coordinate);
     if (j.type != JointType::six_degrees || row < 0 || row >= joint_coordinates)
         return refused_joint(ErrorCode::bad_joint, call,
-                             "only six-degree joints have motors and springs by coordinate");
+                             "only six-degree joints have motors, springs and friction by coordinate");
     JointAxesInfo& axes = world.joints.axes[static_cast<size_t>(j.axes)];
     if ((coordinate == Coordinate::distance && axes.distance_axes == 0) ||
         (coordinate == Coordinate::swing && axes.swing_axes == 0))
@@ -94,6 +94,7 @@ Result<JointId> World::add_joint(const JointDef& def) {
     j.limit = def.limit;
     j.motor = def.motor;
     j.spring = def.spring;
+    j.friction = def.friction;
     j.swing_limit = def.swing_limit;
     j.twist_limit = def.twist_limit;
     j.break_force = def.break_force;
@@ -154,6 +155,40 @@ Status World::set_spring(JointId id, Coordinate coordinate, Spring spring) {
     const bool turns = coordinate >= Coordinate::about_x && coordinate != Coordinate::distance;
     if (Status s = check_spring(spring, turns, call); !s) return s;
     axis.value()->spring = spring;
+    drive_was_set(data(), data().joints.info[id.index]);
+    return {};
+}
+
+Status World::set_friction(JointId id, float friction) {
+    constexpr const char* call = "set_friction";
+    WorldData& world = data();
+    if (!world.joints.alive(id)) return no_such(world.joints.slots, id.generation, call, "joint");
+    JointInfo& j = world.joints.info[id.index];
+    if (j.type == JointType::fixed || j.type == JointType::six_degrees)
+        return refused_joint(ErrorCode::bad_joint, call,
+                             "only hinges, sliders, distance and ball joints have one friction");
+    if (Status s = check_joint_friction(friction, call); !s) return s;
+    if (j.type == JointType::ball) {
+        // Balls are of another class with friction than without, and with no impulse of it left.
+        drop_joint_records(world);
+        if (!(friction > 0.0f)) {
+            JointImpulses& held = world.joints.impulses[id.index];
+            if (j.swing_limit > 0.0f) held.angular[0] = held.angular[1] = held.angular[2] = 0.0f;
+            held.motor = 0.0f;
+        }
+    }
+    j.friction = friction;
+    if (JointAxis* axis = driven_axis(world, j)) axis->friction = friction;
+    drive_was_set(world, j);
+    return {};
+}
+
+Status World::set_friction(JointId id, Coordinate coordinate, float friction) {
+    constexpr const char* call = "set_friction";
+    Result<JointAxis*> axis = axis_of(data(), id, coordinate, call);
+    if (!axis) return axis.error();
+    if (Status s = check_joint_friction(friction, call); !s) return s;
+    axis.value()->friction = friction;
     drive_was_set(data(), data().joints.info[id.index]);
     return {};
 }
@@ -277,6 +312,7 @@ JointDef World::joint_def(JointId id) const {
     def.limit = j.limit;
     def.motor = j.motor;
     def.spring = j.spring;
+    def.friction = j.friction;
     def.swing_limit = j.swing_limit;
     def.twist_limit = j.twist_limit;
     if (j.type == JointType::six_degrees) def.axes = coordinates_of(world.joints.axes[static_cast<size_t>(j.axes)]);

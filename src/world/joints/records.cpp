@@ -12,11 +12,16 @@ namespace {
 
 JointClass class_of(const JointInfo& j) {
     if (j.axes >= 0) return JointClass::six_degrees;
-    bool driven = j.motor.max_force > 0.0f || j.spring.stiffness > 0.0f || j.spring.damping > 0.0f;
+    const bool rubs = j.friction > 0.0f,
+               driven = j.drive().max_force > 0.0f || j.spring.stiffness > 0.0f || j.spring.damping > 0.0f;
     switch (j.type) {
         case JointType::ball:
             // A cone without width is a hinge whose angle is the twist.
-            if (j.swing_limit == 0.0f) return j.twist_limit.free() ? JointClass::hinge : JointClass::limited_hinge;
+            if (j.swing_limit == 0.0f)
+                return rubs                   ? JointClass::driven_hinge
+                       : j.twist_limit.free() ? JointClass::hinge
+                                              : JointClass::limited_hinge;
+            if (rubs) return JointClass::rubbing_ball;
             return j.swing_limit <= pi || !j.twist_limit.free() ? JointClass::limited_ball : JointClass::ball;
         case JointType::hinge:
             return driven ? JointClass::driven_hinge : j.limit.free() ? JointClass::hinge : JointClass::limited_hinge;
@@ -57,9 +62,10 @@ void put_bounds(JointRecord& r, const JointInfo& j) {
     r.lower = limit.free() ? -unlimited : maximum(limit.lower, -unlimited);
     r.upper = limit.free() ? unlimited : minimum(limit.upper, unlimited);
     r.swing_limit = j.swing_limit > pi ? unlimited : j.swing_limit;
+    const Motor drive = j.drive();
+    r.motor_velocity = drive.target_velocity;
+    r.motor_force = minimum(drive.max_force, unlimited);
     if (ball) return;
-    r.motor_velocity = j.motor.target_velocity;
-    r.motor_force = minimum(j.motor.max_force, unlimited);
     r.stiffness = j.spring.stiffness;
     r.damping = j.spring.damping;
     // -k (x - t) - c (x' - u) is the force of a spring to t + c u / k.

@@ -21,7 +21,8 @@ void lock(JointAxis& axis, float at) {
 bool hard(const JointAxis& axis) { return axis.limit_stiffness == 0.0f && axis.limit_damping == 0.0f; }
 bool locked(const JointAxis& axis) { return axis.limit.locked() && hard(axis); }
 bool driven(const JointAxis& axis) {
-    return axis.motor.max_force > 0.0f || axis.spring.stiffness > 0.0f || axis.spring.damping > 0.0f;
+    return axis.motor.max_force > 0.0f || axis.friction > 0.0f || axis.spring.stiffness > 0.0f ||
+           axis.spring.damping > 0.0f;
 }
 
 // A distance or angle of several axes that may not grow is a lock of each of them; it is never below 0 by itself.
@@ -42,8 +43,9 @@ void put_axis(JointAxisRecord& r, const JointAxis& axis) {
     r.upper = axis.limit.free() ? unlimited : minimum(axis.limit.upper, unlimited);
     r.limit_stiffness = axis.limit_stiffness;
     r.limit_damping = axis.limit_damping;
-    r.motor_velocity = axis.motor.target_velocity;
-    r.motor_force = minimum(axis.motor.max_force, unlimited);
+    const Motor motor = axis.motor.max_force > 0.0f ? axis.motor : Motor{0.0f, axis.friction};
+    r.motor_velocity = motor.target_velocity;
+    r.motor_force = minimum(motor.max_force, unlimited);
     r.stiffness = axis.spring.stiffness;
     r.damping = axis.spring.damping;
     r.target = axis.spring.target;
@@ -98,6 +100,7 @@ JointAxesInfo rows_of(const JointDef& def) {
     axis.limit = def.limit;
     axis.motor = def.motor;
     axis.spring = def.spring;
+    axis.friction = def.friction;
     return rows;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr char magic[8] = {'L', 'E', 'N', 'D', 'S', 'N', 'A', 'P'};
-constexpr uint32_t version = 8;
+constexpr uint32_t version = 9;
 constexpr size_t header_bytes = sizeof magic + 2 * sizeof(uint32_t), checksum_bytes = sizeof(uint64_t);
 
 uint64_t checksum(std::span<const uint8_t> bytes) {
@@ -109,8 +109,13 @@ void slots(Bytes& bytes, SavedSlots& s) {
 template <class Bytes>
 void body(Bytes& bytes, SavedBody& b) {
     flags(bytes, b.asleep, b.has_forces, b.placed, b.capped, b.contained, b.stopped, b.loaded, b.fixed);
-    if (b.fixed) return;
-    flags(bytes, b.mover, b.woken, b.bullet, b.allow_sleep, b.drags_alike, b.kinematic);
+    if (b.fixed) {
+        flags(bytes, b.altered);
+        if (b.altered) bytes(b.pose);
+        return;
+    }
+    flags(bytes, b.mover, b.woken, b.bullet, b.allow_sleep, b.drags_alike, b.kinematic, b.altered);
+    if (b.altered) bytes(b.mass.mass, b.mass.inverse_mass, b.mass.inertia, b.mass.inverse_inertia, b.mass.anisotropy);
     if (!b.drags_alike) bytes(b.linear_damping, b.angular_damping, b.gravity_factor);
     bytes(b.pose, b.still_time);
     if (b.asleep) bytes(b.momenta.x_low, b.momenta.turn_low);
@@ -147,12 +152,12 @@ template <class Bytes>
 void joint(Bytes& bytes, SavedJoint& j) {
     JointImpulses& i = j.impulses;
     drive(bytes, j.motor, j.spring);
-    bytes(j.limit, j.twist_limit, j.swing_limit);
+    bytes(j.limit, j.twist_limit, j.swing_limit, j.friction);
     bytes(i.linear, i.angular, i.limit, i.motor, i.spring, i.flags);
     bytes(i.impulse, i.angular_impulse, i.h);
     flags(bytes, j.has_axes);
     if (!j.has_axes) return;
-    for (JointAxis& axis : j.axes.row) drive(bytes, axis.motor, axis.spring), bytes(axis.limit);
+    for (JointAxis& axis : j.axes.row) drive(bytes, axis.motor, axis.spring), bytes(axis.limit, axis.friction);
     bytes(j.axes.limit, j.axes.motor, j.axes.spring);
 }
 

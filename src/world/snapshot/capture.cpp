@@ -33,15 +33,15 @@ uint64_t mix_surface(uint64_t h, const Surface& s) {
 
 uint64_t mix_body(uint64_t h, const WorldData& world, uint32_t slot) {
     const BodyInfo& info = world.bodies.info[slot];
-    const BodyMass& mass = world.bodies.mass_as_dynamic(slot);
+    const BodyMass& mass = world.bodies.mass_as_added(slot);
     h = hash_combine(h, slot);
     h = hash_combine(h, world.bodies.slots.uses(slot));
     h = hash_combine(h, static_cast<uint64_t>(info.type == BodyType::fixed));
     h = hash_combine(h, static_cast<uint64_t>(info.massless));
     h = mix(hash_floats(h, &mass.mass, 1), mass.inertia);
-    // Static bodies are not in the snapshot: they stand where they stand.
-    if (info.type == BodyType::fixed)
-        h = mix(h, Transform{from_origin(world.bodies.pose[slot].position), world.bodies.pose[slot].orientation});
+    // Static bodies are in the snapshot only where they were moved: else they stand where they stand.
+    const Pose& pose = world.bodies.pose_as_added(slot);
+    if (info.type == BodyType::fixed) h = mix(h, Transform{from_origin(pose.position), pose.orientation});
     for (uint32_t c = info.first_collider; c != no_slot; c = world.colliders.info[c].next) {
         const ColliderInfo& collider = world.colliders.info[c];
         h = hash_combine(h, c);
@@ -82,6 +82,8 @@ SavedBody capture_body(const WorldData& world, uint32_t slot, const SavedBody& b
     b.drags_alike = b.linear_damping == before.linear_damping && b.angular_damping == before.angular_damping &&
                     b.gravity_factor == before.gravity_factor;
     b.fixed = info.type == BodyType::fixed;
+    b.altered = info.altered;
+    if (b.altered && !b.fixed) b.mass = world.bodies.mass_as_dynamic(slot);
     b.pose = world.bodies.pose[slot];
     b.momenta = world.bodies.momenta[slot];
     b.change = world.bodies.change[slot];
@@ -186,8 +188,9 @@ void capture(const WorldData& world, SavedState& state) {
     for (uint32_t slot : world.joints.slots.order()) {
         const JointInfo& j = world.joints.info[slot];
         const bool has_axes = j.axes >= 0;
-        state.joints.push_back({j.limit, j.twist_limit, j.swing_limit, j.motor, j.spring, joint_impulses(world, slot),
-                                has_axes, has_axes ? joint_axes_impulses(world, slot) : JointAxesInfo{}});
+        state.joints.push_back({j.limit, j.twist_limit, j.swing_limit, j.motor, j.spring, j.friction,
+                                joint_impulses(world, slot), has_axes,
+                                has_axes ? joint_axes_impulses(world, slot) : JointAxesInfo{}});
     }
     state.boxes.append(world.moving_boxes.data(), world.moving_boxes.size());
     capture_pairs(world, state);

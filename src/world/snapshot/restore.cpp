@@ -26,14 +26,17 @@ bool good_slots(const SavedSlots& s, const Slots& now) {
     return true;
 }
 
-bool good_body(const SavedBody& b) {
-    const Quat& q = b.pose.orientation;
+bool good_pose(const Pose& pose) {
+    const Quat& q = pose.orientation;
     const float orientation[4] = {q.x, q.y, q.z, q.w};
-    return is_finite(from_origin(b.pose.position)) && is_unit(orientation, 4) && is_finite(b.momenta.p) &&
-           is_finite(b.momenta.L) && is_finite(b.momenta.p_low) && is_finite(b.momenta.x_low) &&
-           is_finite(b.momenta.turn_low) && is_finite(b.change.v) && is_finite(b.change.L) &&
-           is_finite(b.forces.force) && is_finite(b.forces.torque) && is_finite(b.still_time) &&
-           b.substeps < substep_classes;
+    return is_finite(from_origin(pose.position)) && is_unit(orientation, 4);
+}
+
+bool good_body(const SavedBody& b) {
+    return good_pose(b.pose) && is_finite(b.momenta.p) && is_finite(b.momenta.L) && is_finite(b.momenta.p_low) &&
+           is_finite(b.momenta.x_low) && is_finite(b.momenta.turn_low) && is_finite(b.change.v) &&
+           is_finite(b.change.L) && is_finite(b.forces.force) && is_finite(b.forces.torque) &&
+           is_finite(b.still_time) && b.substeps < substep_classes;
 }
 
 bool good_contact(const SavedContact& c) {
@@ -57,6 +60,11 @@ std::vector<const SavedBody*> owners(const WorldData& world, const SavedState& s
     return owner;
 }
 
+bool good_mass(const BodyMass& m) {
+    return check_mass(m.mass, "restore") && is_finite(m.inverse_mass) && can_be_inverted(m.inertia) &&
+           is_finite(m.inverse_inertia) && is_finite(m.anisotropy);
+}
+
 // Static bodies never take part in steps, those awake always do.
 Status check_bodies(const WorldData& world, const SavedState& state) {
     for (uint32_t i = 0; i < state.body_slots.count; ++i) {
@@ -66,6 +74,7 @@ Status check_bodies(const WorldData& world, const SavedState& state) {
         if (!b.fixed && info.massless && !b.kinematic) return bad("takes a body without mass for a dynamic one");
         if (b.fixed != (type == BodyType::fixed)) return bad("takes a static body for a moving one");
         bool good = b.fixed ? !b.mover : good_body(b) && (b.mover || b.asleep || b.kinematic);
+        if (b.altered) good = good && (b.fixed ? good_pose(b.pose) : !info.massless && good_mass(b.mass));
         if (!good) return bad("holds a body whose state cannot be");
     }
     return {};
@@ -139,11 +148,25 @@ Status check_pairs(const WorldData& world, const SavedState& state) {
     return {};
 }
 
+// A body that was altered before the snapshot or since, after its type.
+void apply_alteration(WorldData& world, uint32_t slot, const SavedBody& b) {
+    BodyStore& bodies = world.bodies;
+    if (!b.altered && !bodies.info[slot].altered) return;
+    if (b.fixed) bodies.alter_pose(slot, b.altered ? b.pose : bodies.first_pose[slot]);
+    else bodies.alter_mass(slot, b.altered ? b.mass : BodyMass(bodies.first_mass[slot]));
+    bodies.info[slot].altered = b.altered;
+    if (!b.fixed) return;
+    world.continuous.colliders_changed = true;
+    for (uint32_t c = bodies.info[slot].first_collider; c != no_slot; c = world.colliders.info[c].next)
+        world.query_scene.changed(c);
+}
+
 // `drags`: what holds its damping and gravity factor.
 void apply_body(WorldData& world, uint32_t slot, const SavedBody& b, const SavedBody& drags) {
     BodyInfo& info = world.bodies.info[slot];
     const BodyType type = b.kinematic ? BodyType::kinematic : BodyType::dynamic;
     if (type != info.type) set_body_type(world, slot, type);
+    apply_alteration(world, slot, b);
     world.bodies.pose[slot] = b.pose;
     world.bodies.momenta[slot] = b.momenta;
     world.bodies.change[slot] = b.change;
@@ -183,7 +206,8 @@ void apply_bodies(WorldData& world, const SavedState& state) {
         if (saved.mover) movers.bodies.push_back(slot);
         else info.solver_index = static_body;
         if (!saved.fixed && !saved.drags_alike) drags = &saved;
-        if (!saved.fixed) apply_body(world, slot, saved, *drags);
+        if (saved.fixed) apply_alteration(world, slot, saved);
+        else apply_body(world, slot, saved, *drags);
         for (uint32_t c = info.first_collider; c != no_slot; c = world.colliders.info[c].next) {
             world.at_rest[c] = saved.mover ? 0 : 1;
             colliders.push_back(c);
@@ -231,6 +255,7 @@ void apply_joints(WorldData& world, const SavedState& state) {
         world.joints.info[slot].swing_limit = joint.swing_limit;
         world.joints.info[slot].motor = joint.motor;
         world.joints.info[slot].spring = joint.spring;
+        world.joints.info[slot].friction = joint.friction;
         world.joints.impulses[slot] = joint.impulses;
         if (world.joints.info[slot].axes < 0) continue;
         JointAxesInfo& axes = world.joints.axes[static_cast<size_t>(world.joints.info[slot].axes)];
@@ -238,6 +263,7 @@ void apply_joints(WorldData& world, const SavedState& state) {
             axes.row[i].limit = joint.axes.row[i].limit;
             axes.row[i].motor = joint.axes.row[i].motor;
             axes.row[i].spring = joint.axes.row[i].spring;
+            axes.row[i].friction = joint.axes.row[i].friction;
             axes.limit[i] = joint.axes.limit[i];
             axes.motor[i] = joint.axes.motor[i];
             axes.spring[i] = joint.axes.spring[i];

@@ -27,7 +27,9 @@ struct SavedBody {
     bool kinematic = false, bullet = false, allow_sleep = true;
     bool drags_alike = false;  // the next three are those of the body before
     float linear_damping = 0.0f, angular_damping = 0.0f, gravity_factor = 1.0f;
-    bool fixed = false;  // a static body: nothing but `placed` is saved of it
+    bool fixed = false;  // a static body: nothing but `placed` is saved of it, and its pose where it was moved
+    bool altered = false;
+    BodyMass mass;  // where it was set
     bool mover = false;
     bool asleep = false, has_forces = false, placed = false, capped = false, contained = false, stopped = false;
     // Of the island that it was in: class of substeps, and for how many steps fewer would have done, or, above
@@ -49,6 +51,7 @@ struct SavedJoint {
     float swing_limit = 0.0f;
     Motor motor;
     Spring spring;
+    float friction = 0.0f;
     JointImpulses impulses;
     bool has_axes = false;
     JointAxesInfo axes{};  // of joints whose rows are data: their motors, springs and impulses
