@@ -1,8 +1,7 @@
 // A car: a body on four wheels. It drives up to speed, turns, brakes and stands.
 //
 // A wheel hangs on two joints with a carrier between them, a small body:
-//   car - carrier   six degrees: travel along y is the suspension, a spring and damper within bounds; turning about y
-//   is
+//   car - carrier   six degrees: travel along y is the suspension, spring and damper within bounds; turning about y is
 //                   locked, or held at the steering angle by a stiff spring; all else is locked
 //   carrier - wheel a hinge along the axle, with the motor, and with friction for the bearing and the brake
 // One joint would not do: turning about several axes at once, a wheel has no steering angle of its own.
