@@ -24,6 +24,7 @@ struct CollidePair {
     Vec3 offset;                  // position of B's shape minus position of A's, world axes
     float margin;                 // surfaces farther apart than this give no points, m
     CarriedPoints carried{};      // of the pair's last manifold
+    Vec3 ahead{};                 // how far B moves against A until the middle of the step, world axes
 };
 
 struct CollideSettings {

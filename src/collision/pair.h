@@ -30,7 +30,7 @@ inline bool is_convex(const Geometry& g) { return g.kind != GeometryKind::plane 
 
 // The same pair seen from B.
 inline CollidePair swapped(const CollidePair& p) {
-    return {p.b, p.a, p.rotation_b, p.rotation_a, -p.offset, p.margin, p.carried};
+    return {p.b, p.a, p.rotation_b, p.rotation_a, -p.offset, p.margin, p.carried, -p.ahead};
 }
 // Turns a manifold of swapped(pair) into one of `pair`.
 inline void swap_back(const CollidePair& pair, Manifold& m) {

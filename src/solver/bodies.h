@@ -56,15 +56,19 @@ struct alignas(64) BodyMotion {
     float linear_loss;         // 1 - exp(-damping h)
     float inverse_inertia[3];  // principal
     float angular_loss;
-    float angular_momentum[3];   // L, world axes
-    float anisotropy;            // largest over smallest principal moment; 1: turns about a fixed axis
-    float acceleration[3];       // gravity and applied forces over the substep, damping included
-    float free;                  // 1: no constraint acts on this body in this step; -1: one to another moving body
+    float angular_momentum[3];  // L, world axes
+    float anisotropy;           // largest over smallest principal moment; 1: turns about a fixed axis
+    float acceleration[3];      // gravity and applied forces over the substep, damping included
+    float free;  // 1: no constraint acts on this body in this step; -1: ones to other moving bodies, -2: and others
     float torque[3];             // applied, world axes, damping included
-    float joints;                // 1: has joints; 2: and its group touches nothing: a split kick. Set by the solver
+    float joints;                // 0: has none; joints_touching and its like below. Set by the solver
     float change_v[3], unused1;  // how the last substep changed velocity and L: the acceleration the drift expects
     float change_L[3], unused2;
 };
+
+// As BodyMotion::joints: the group that joints connect touches something, or nothing, by which its kick is split. Added
+// to either in the step in which that changes.
+inline constexpr float joints_touching = 1.0f, joints_split = 2.0f, joints_change = 0.25f;
 
 // Sixteen bodies as kick and drift see them, component by component: read and written front to back twice a substep,
 // never gathered, so lanes need no transposing. Begun from BodyMotion before the first substep.

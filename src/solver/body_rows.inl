@@ -16,7 +16,8 @@
 //
 // Bodies with joints (see joints/passes.inl): the drift goes by the velocity that the joints' biased pass chose. Where
 // nothing but joints constrains a group of bodies, the kick is split: half of the applied forces acts before the first
-// drift, half after the last one, all of them in between. Elsewhere all of the kick comes first, as contacts want it.
+// drift, half after the last one, all of them in between. Elsewhere all of the kick comes first, as contacts want it;
+// see first_kick() for what changes.
 
 // Lanes [first, first + W) of the components of a BodyBlock.
 template <int W>
@@ -110,6 +111,16 @@ template <class F>
 struct JointMode {
     F jointed, split;  // 1 or 0
 };
+// How much of the kick comes first in a step. Half of it where it is split; elsewhere all, so velocities are those of
+// the middle of the last substep, half a kick behind. What changes from one to the other begins with what the kick
+// lacks or is ahead by, or a group that touches on its way down and lets go on its way up gains half a kick's work each
+// time: a cradle of five balls 0.03 % a second.
+template <class F>
+LENDULET_FORCE_INLINE F first_kick(F joints) {
+    constexpr float middle = 0.5f * (joints_touching + joints_split + joints_change);
+    auto half = absolute(joints - splat<F>(middle)) < splat<F>(0.5f);
+    return select(half, splat<F>(0.5f), splat<F>(1.0f));
+}
 template <class F>
 LENDULET_FORCE_INLINE JointMode<F> joint_mode(F joints) {
     const F one = splat<F>(1.0f), zero = splat<F>(0.0f);
@@ -157,7 +168,7 @@ void kick_bodies(SolverBodies& bodies, const SubstepConstants& k, int begin, int
         y.put(b.v_start, x.v);
         y.put(b.L_start, L);
         F h = splat<F>(k.h);
-        if (k.joints && k.first) h = select(mode.split > zero, splat<F>(0.5f) * h, h);
+        if (k.joints && k.first) h = first_kick(y.get(b.joints)) * h;
         Vec3T<F> start_w = y.get(b.start_w);
         L = L - y.get(b.angular_loss) * L + h * y.get(b.torque);
         SymMat3T<F> I = load_inverse_inertia<W>(bodies.inertia.data(), c.index);

@@ -127,8 +127,9 @@ struct Side {
         add_lanes(block->L_start, dL);
         const Vec3 shift = -time * dv;
         add(state->dp, shift);
-        // What contacts hold and the kick will repeat acts at other arms now.
-        if (!first && block->joints[at] == 0.0f) {
+        // What contacts with moving bodies hold and the kick will repeat acts at other arms now. What the ground holds
+        // does not: a ball's contact goes with it. Billiard balls lost and gained 2 % by taking that for the same.
+        if (!first && block->joints[at] == 0.0f && block->free[at] == -1.0f) {
             const Vec3 held = lanes(block->dv) + (load(state->v) - lanes(block->v_ref));
             add_lanes(block->dL, (-1.0f / state->inverse_mass) * cross(shift, held));
         }

@@ -29,7 +29,8 @@ float freedom(const WorldData& world, uint32_t slot) {
     if (slot >= world.island_loads.size()) return 1.0f;
     const IslandLoad& l = world.island_loads[slot];
     if (l.step != world.steps + 1 || !l.touches) return 1.0f;
-    return l.meets_moving ? -1.0f : 0.0f;
+    if (!l.meets_moving) return 0.0f;
+    return l.meets_fixed ? -2.0f : -1.0f;
 }
 
 // What gravity and applied forces do to a body, before damping.

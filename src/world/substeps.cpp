@@ -180,6 +180,7 @@ LENDULET_FORCE_INLINE void LoadSurvey::add(uint32_t record, const TouchingBodies
     const uint32_t a = ends.a, b = ends.b;
     const bool both = !ends.fixed_a && takes_part(a);
     if (both) loads[a].meets_moving = loads[b].meets_moving = true;
+    else loads[b].meets_fixed = true;
     // All that touches one body that is moved by hand goes with it, so it is one island.
     const bool carried = !both && moved_by_hand(world, a);
     if (carried && loads[a].step != now) begin(a);

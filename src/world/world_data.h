@@ -62,6 +62,7 @@ struct alignas(64) IslandLoad {
     uint8_t substeps = 0;                 // class
     uint8_t calm = 0;                     // steps for which it has been slow, at most calm_steps; `slow`: for so many
     bool meets_moving = false;            // has a contact with another dynamic body
+    bool meets_fixed = false;             // has one with what constraints do not move
     bool in_group = false;                // in one of WorldData::joint_groups
     bool held = false;                    // rests on a contact that carries already
     bool slept = false;                   // sleeps, and goes on from here when it wakes

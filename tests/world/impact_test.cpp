@@ -110,5 +110,35 @@ TEST(Impacts, WithoutRestitutionAddNoEnergy) {
         }
 }
 
+// A billiard ball that rolls into another one head on: of its v + 0.4 r w the blow takes v and no more, whenever in a
+// step they meet.
+TEST(Impacts, AFollowShotExchangesSpeedAlone) {
+    constexpr float r = 0.03f, v = 1.5f;
+    for (int i = 0; i < 50; ++i) {
+        World world = WorldBuilder{}.sleep(false).build().value();
+        const ColliderDef table{
+            .shape = Box{{50.0f, 1.0f, 50.0f}},
+            .material = {
+                .static_friction = 0.4f, .dynamic_friction = 0.4f, .restitution_combine = CombineRule::minimum}};
+        world.add_static_body({.position = {0.0f, -1.0f, 0.0f}, .colliders = {&table, 1}}).value();
+        RigidBodyDef def{.shape = Sphere{r},
+                         .position = {0.0f, r, 0.0f},
+                         .velocity = {v, 0.0f, 0.0f},
+                         .angular_velocity = {0.0f, 0.0f, -v / r},
+                         .friction = 0.0f,
+                         .restitution = 1.0f};
+        const BodyId cue = world.add_rigid_body(def).value();
+        def.position.x = 2.0f * r + 0.1f + 0.0005f * static_cast<float>(i);
+        def.velocity = def.angular_velocity = {};
+        const BodyId object = world.add_rigid_body(def).value();
+        for (int step = 0; step < 20; ++step) world.update(dt).value();
+        auto rolled = [&](BodyId id) {
+            return world.get(id).velocity().x - 0.4f * r * world.get(id).angular_velocity().z;
+        };
+        EXPECT_NEAR(rolled(object), v, 0.001f * v) << i;
+        EXPECT_NEAR(rolled(cue), 0.4f * v, 0.001f * v) << i;
+    }
+}
+
 }  // namespace
 }  // namespace lendulet

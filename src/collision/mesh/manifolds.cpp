@@ -19,7 +19,7 @@ uint32_t name_of_face(Vec3 n, uint8_t material) {
 bool names_corner(uint32_t id) { return id >> 16 == face_feature(0); }
 
 float deepest_of(const TriangleContact& contact) {
-    float deepest = contact.points[0].separation;
+    float deepest = contact.points[0].separation - contact.nears;
     for (int i = 1; i < contact.count; ++i) deepest = minimum(deepest, contact.points[i].separation);
     return deepest;
 }
@@ -93,6 +93,10 @@ void MeshManifolds::add(const TriangleContact& contact) {
         group->deepest_original = contact.original;
     }
     group->deepest = minimum(group->deepest, deepest);
+    if (contact.single) {
+        if (!leads && group->count > 0) return;
+        group->count = 0;
+    }
     if (contact.original < group->lowest_original) group->lowest_original = contact.original;
     for (int i = 0; i < contact.count; ++i) add_point(*group, contact.points[i]);
 }

@@ -27,6 +27,9 @@ struct TriangleContact {
     uint32_t original;  // the triangle
     uint8_t material;
     int count = 0;
+    // Of a ball, whose contacts are one: how much nearer it is in the middle of the step.
+    bool single = false;
+    float nears = 0.0f;
     MeshPoint points[max_clipped_points];
 };
 

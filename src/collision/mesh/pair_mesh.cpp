@@ -162,12 +162,41 @@ Triangle left_triangle(const MeshQuery& q, const uint32_t* triangles, const Mesh
     return t;
 }
 
+// A ball that moves by less than this part of its size until the middle of a step touches what is below it.
+constexpr float least_ahead = 1e-3f;
+
+// Where a ball rolls over many triangles in a step, those that bend towards each other by little give one contact, and
+// its normal is that of the triangle which the ball is over in the middle of the step: with the first one's it runs
+// into those ahead, is pushed out of them for nothing, and swings higher and higher in a trough.
 void collide_ball(const MeshQuery& q, const uint32_t* triangles, const MeshFilter& found, MeshManifolds& manifolds) {
     const bool one_sided = q.surface.one_sided();
+    const Vec3 ahead = rotate_inverse(q.pair.rotation_a, q.pair.ahead);
+    const bool moves = length_squared(ahead) > least_ahead * least_ahead * q.size * q.size;
+    float least = 0.0f;
+    uint64_t over[MeshFilter::capacity / 64 + 1] = {};
     for (int i = 0; i < found.live(); ++i) {
         if (one_sided && found.is_behind(i)) continue;
         TriangleContact contact;
         sphere_triangle(q, left_triangle(q, triangles, found, i), contact);
+        if (contact.count == 0) continue;
+        contact.single = moves;
+        contact.nears = -dot(contact.normal, ahead);
+        least = minimum(least, contact.points[0].separation);
+        if (contact.face) over[i / 64] |= uint64_t{1} << (i % 64);
+        manifolds.add(contact);
+    }
+    for (int i = 0; moves && i < found.live(); ++i) {
+        if ((one_sided && found.is_behind(i)) || (over[i / 64] >> (i % 64) & 1) != 0) continue;
+        const Triangle t = left_triangle(q, triangles, found, i);
+        const float separation = -dot(t.normal, t.vertices[0]) - q.shape.rounding;
+        if (separation > q.pair.margin || !(separation >= least)) continue;
+        const TrianglePoint nearest = nearest_on_triangle(t.vertices, ahead);
+        if (nearest.edges != 0) continue;
+        TriangleContact contact;
+        start(q, t, t.normal, true, q.shape.rounding, 1.0f, contact);
+        add_point(-(q.shape.rounding + 0.5f * separation) * t.normal, separation, 0, contact);
+        contact.single = true;
+        contact.nears = -dot(contact.normal, ahead);
         manifolds.add(contact);
     }
 }

@@ -44,7 +44,7 @@ struct alignas(64) JointRecord {
     float lower, upper;      // bounds of angle, travel or twist; +-unlimited where there are none
     int32_t body_a, body_b;  // solver bodies; at least one is moved by constraints
     JointClass type;
-    uint16_t flags, old_flags;  // joint_split and joint_alone, of this step and the one before; set by the solver
+    uint16_t flags, old_flags;  // joint_split and its like, of this step and the one before; set by the solver
     float stiffness, damping, target, spring_force;  // spring_force: largest, N or N m
     float linear[3], limit_0;   // impulses on B: locked linear rows; limit, or a ball joint's swing
     float angular[3], limit_1;  // locked angular rows, or a ball joint's friction along world axes; its twist limit
@@ -82,6 +82,8 @@ struct JointAxesRecord {
 inline constexpr uint16_t joint_split = 1;
 // Neither body has another joint: one sweep solves it exactly, so it needs no softness.
 inline constexpr uint16_t joint_alone = 2;
+// The joint has been through a step: the other two bits tell of it.
+inline constexpr uint16_t joint_stepped = 4;
 
 // Where joints share bodies, a sweep leaves slow modes unsolved; as for contacts these must be damped by giving up a
 // share of the impulse in every biased pass, with `bias` the share of the gap that is undone. See docs/solver.md.

@@ -70,6 +70,9 @@ void JointSchedule::find_groups_of_bodies(const JointRecord* records, int count,
     touched_.assign(n, uint8_t{0});
 }
 
+// Bits of touched_: that the group has contacts that press, and while modes are set that it has changed in that.
+constexpr uint8_t touches = 1, changes = 2;
+
 // Contacts that press make the whole group of jointed bodies theirs.
 void JointSchedule::find_touching(ContactList contacts, const SolverBodies& bodies) {
     touched_before_.swap(touched_);
@@ -78,8 +81,8 @@ void JointSchedule::find_touching(ContactList contacts, const SolverBodies& bodi
         const ContactRecord& r = contacts.records[contacts.list[i]];
         size_t a = static_cast<size_t>(r.body_a), b = static_cast<size_t>(r.body_b);
         if ((joint_count_[a] == 0 && joint_count_[b] == 0) || !presses(r, bodies, contacts.dt)) continue;
-        if (joint_count_[a] > 0) touched_[parent_[a]] = 1;
-        if (joint_count_[b] > 0) touched_[parent_[b]] = 1;
+        if (joint_count_[a] > 0) touched_[parent_[a]] = touches;
+        if (joint_count_[b] > 0) touched_[parent_[b]] = touches;
     }
 }
 
@@ -87,19 +90,23 @@ void JointSchedule::set_modes(JointRecord* records, int count, const SolverBodie
     for (int i = 0; i < count; ++i) {
         JointRecord& r = records[i];
         size_t a = static_cast<size_t>(r.body_a), b = static_cast<size_t>(r.body_b);
-        bool split = !touched_[parent_[moved(bodies, r.body_b) ? b : a]];
+        uint8_t& group = touched_[parent_[moved(bodies, r.body_b) ? b : a]];
+        bool split = (group & touches) == 0;
         bool alone = split && joint_count_[a] <= 1 && joint_count_[b] <= 1;
         uint32_t crowd = joint_count_[a] > joint_count_[b] ? joint_count_[a] : joint_count_[b];
         r.relaxation = minimum(1.0f, joint_crowd / static_cast<float>(crowd));
         r.old_flags = r.flags;
-        r.flags = static_cast<uint16_t>((split ? joint_split : 0) | (alone ? joint_alone : 0));
+        r.flags = static_cast<uint16_t>(joint_stepped | (split ? joint_split : 0) | (alone ? joint_alone : 0));
+        if ((r.old_flags & joint_stepped) != 0 && ((r.old_flags ^ r.flags) & joint_split) != 0) group |= changes;
     }
 }
 
-void JointSchedule::set_bodies(SolverBodies& bodies) const {
+void JointSchedule::set_bodies(SolverBodies& bodies) {
     for (uint32_t i : jointed_) {
+        const uint8_t group = touched_[parent_[i]];
         BodyMotion& m = bodies.motion[i];
-        m.joints = touched_[parent_[i]] ? 1.0f : 2.0f;
+        m.joints =
+            ((group & touches) != 0 ? joints_touching : joints_split) + ((group & changes) != 0 ? joints_change : 0.0f);
         m.free = 0.0f;
     }
 }
@@ -175,9 +182,11 @@ bool JointSchedule::build(JointRecord* records, int count, bool same, ContactLis
     }
     if (!same) find_groups_of_bodies(records, count, bodies);
     find_touching(contacts, bodies);
+    const bool as_before = same && std::memcmp(touched_.data(), touched_before_.data(), touched_.size()) == 0;
+    if (!as_before) set_modes(records, count, bodies);
     set_bodies(bodies);
-    if (same && std::memcmp(touched_.data(), touched_before_.data(), touched_.size()) == 0) return false;
-    set_modes(records, count, bodies);
+    if (as_before) return false;
+    for (uint8_t& group : touched_) group &= touches;
     colour(records, count, bodies, table, scalar_table);
     return true;
 }

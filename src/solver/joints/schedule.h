@@ -49,7 +49,7 @@ private:
     void find_groups_of_bodies(const JointRecord* records, int count, const SolverBodies& bodies);
     void find_touching(ContactList contacts, const SolverBodies& bodies);
     void set_modes(JointRecord* records, int count, const SolverBodies& bodies);
-    void set_bodies(SolverBodies& bodies) const;
+    void set_bodies(SolverBodies& bodies);
     void colour(const JointRecord* records, int count, const SolverBodies& bodies, const JointTable& table,
                 const JointTable& scalar_table);
     uint32_t root(uint32_t body);

@@ -227,23 +227,24 @@ private:
 
     // Bodies whose arms stay are those whose surface the points ride on.
     void tell_speed(const ColliderPair& p, ContactRecord& r, const ShapeFrame& a, const ShapeFrame& b) const {
-        const Vec3 v =
-            Vec3{b.velocity[0], b.velocity[1], b.velocity[2]} - Vec3{a.velocity[0], a.velocity[1], a.velocity[2]};
+        const Vec3 v = velocity_of(b) - velocity_of(a);
         const float way2 = (h_ * h_) * length_squared(v);
         auto grows = [&](float reach) { return way2 > (swift_share * swift_share) * (reach * reach); };
         const bool swift = (!p.fixed_a && r.follow > 0.0f && grows(a.reach)) || (r.follow < 1.0f && grows(b.reach));
         r.flags = swift ? r.flags | contact_swift : r.flags & ~contact_swift;
     }
 
+    static Vec3 velocity_of(const ShapeFrame& f) { return {f.velocity[0], f.velocity[1], f.velocity[2]}; }
     void collide_mesh(ColliderPair& p, uint32_t index, float margin) {
         for (uint32_t i = 1; i < p.count; ++i) prefetch<3>(&world_.records[p.first_record + i]);
         PairCache& cache = world_.pairs.caches[index];
         // Without initial values, as the room for old contacts.
         alignas(Manifold) std::byte manifold_room[max_mesh_manifolds * sizeof(Manifold)];
         auto* manifolds = reinterpret_cast<Manifold*>(manifold_room);
-        int count = collide(collide_input(world_, p, margin), cache, settings(), manifolds, p.capacity,
-                            &world_.pairs.near_triangles[p.surface]);
+        CollidePair pair = collide_input(world_, p, margin);
         const ShapeFrame &a = world_.frames[collider_a(p)], &b = world_.frames[collider_b(p)];
+        pair.ahead = (0.5f * scratch_.motion.dt) * (velocity_of(b) - velocity_of(a));
+        int count = collide(pair, cache, settings(), manifolds, p.capacity, &world_.pairs.near_triangles[p.surface]);
         alignas(OldContact) std::byte room[max_mesh_manifolds * sizeof(OldContact)];
         auto* old = reinterpret_cast<OldContact*>(room);
         for (int i = 0; i < p.count; ++i) new (old + i) OldContact(world_.records[p.first_record + i]);
