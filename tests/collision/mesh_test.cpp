@@ -30,6 +30,27 @@ bool supports(const Manifold& m, Vec3 centre) {
     return true;
 }
 
+void expect_same(const std::vector<Manifold>& kept, const std::vector<Manifold>& fresh) {
+    ASSERT_EQ(kept.size(), fresh.size());
+    for (size_t k = 0; k < kept.size(); ++k) {
+        const Manifold &a = kept[k], &b = fresh[k];
+        ASSERT_EQ(a.count, b.count);
+        EXPECT_EQ(a.normal, b.normal);
+        EXPECT_EQ(a.key, b.key);
+        for (int j = 0; j < a.count; ++j) {
+            EXPECT_EQ(a.points[j].position, b.points[j].position);
+            EXPECT_EQ(a.points[j].separation, b.points[j].separation);
+            EXPECT_EQ(a.points[j].id, b.points[j].id);
+        }
+    }
+}
+
+int looked_at(const MeshCandidates& near) {
+    uint32_t triangles[MeshCandidates::capacity];
+    uint8_t places[MeshCandidates::capacity];
+    return near.near(triangles, places);
+}
+
 TEST(Mesh, FlatGridGivesThePlanesNormalEverywhere) {
     Solid mesh(flat_grid(16, 0.5f)), ball(Sphere{0.4f}), box(Box{{0.3f, 0.4f, 0.5f}});
     Random random(5);
@@ -305,18 +326,8 @@ TEST(Mesh, KeptTrianglesChangeNothing) {
                 kept.resize(static_cast<size_t>(collide(pair, cache, {}, kept.data(), max_mesh_manifolds, &near)));
                 searches += !found || !(near.lower == before);
                 touching += !kept.empty();
-                ASSERT_EQ(kept.size(), fresh.size()) << kind.name << " " << i;
-                for (size_t k = 0; k < kept.size(); ++k) {
-                    const Manifold &a = kept[k], &b = fresh[k];
-                    ASSERT_EQ(a.count, b.count);
-                    EXPECT_EQ(a.normal, b.normal);
-                    EXPECT_EQ(a.key, b.key);
-                    for (int j = 0; j < a.count; ++j) {
-                        EXPECT_EQ(a.points[j].position, b.points[j].position);
-                        EXPECT_EQ(a.points[j].separation, b.points[j].separation);
-                        EXPECT_EQ(a.points[j].id, b.points[j].id);
-                    }
-                }
+                expect_same(kept, fresh);
+                if (HasFailure()) return;
             }
             EXPECT_GT(touching, 40) << kind.name;
             EXPECT_LT(searches, 40) << kind.name;
@@ -325,6 +336,64 @@ TEST(Mesh, KeptTrianglesChangeNothing) {
                 EXPECT_GT(searches, 1) << kind.name;
             }
         }
+    }
+}
+
+// Shapes that tumble over hills and plunge into them, among triangles smaller and larger than they are, by steps and
+// with margins of all sizes; the mesh turns as well.
+TEST(Mesh, TumblingShapesTouchAsIfNothingWereKept) {
+    auto height = [](float x, float z) { return 0.3f * sin_cos(2.1f * x).sin * sin_cos(1.7f * z + 0.5f).cos; };
+    Random random(26);
+    for (float step : {0.45f, 0.15f}) {
+        Solid mesh(grid(step > 0.2f ? 20 : 60, step, height));
+        for (const Kind& kind : every_kind()) {
+            Solid shape(kind.shape);
+            MeshCandidates near;
+            Vec3 at{};
+            Quat turn, floor;
+            int touching = 0;
+            for (int i = 0; i < 600; ++i) {
+                const float size = i % 50 == 49 ? 0.3f : random.in(0.0f, 0.04f);
+                at += size * random.direction();
+                at = {clamp(at.x, -2.0f, 2.0f), clamp(at.y, -0.4f, 0.9f), clamp(at.z, -2.0f, 2.0f)};
+                turn = rotation_about(random.direction(), random.in(0.0f, 0.1f)) * turn;
+                floor = rotation_about(random.direction(), random.in(0.0f, 0.005f)) * floor;
+                const CollidePair pair =
+                    pair_of({mesh, floor}, {shape, floor * turn}, rotate(floor, at), random.in(0.0f, 0.06f));
+                PairCache cache;
+                std::vector<Manifold> kept(max_mesh_manifolds);
+                kept.resize(static_cast<size_t>(collide(pair, cache, {}, kept.data(), max_mesh_manifolds, &near)));
+                SCOPED_TRACE(kind.name);
+                SCOPED_TRACE(i);
+                expect_same(kept, manifolds(pair));
+                if (HasFailure()) return;
+                touching += !kept.empty();
+            }
+            EXPECT_GT(touching, 100) << kind.name;
+        }
+    }
+}
+
+// A shape that rests looks at the triangles that it stands on and few others.
+TEST(Mesh, TrianglesThatAreApartAreNotLookedAtAgain) {
+    auto height = [](float x, float z) { return 0.2f * sin_cos(1.1f * x).sin * sin_cos(0.9f * z).cos; };
+    Solid mesh(grid(40, 0.2f, height));
+    for (const Kind& kind : every_kind()) {
+        Solid shape(kind.shape);
+        const CentredBox box = bounds(shape.geometry, {});
+        MeshCandidates near;
+        Vec3 at{0.03f, 0.0f, 0.05f};
+        at.y = height(at.x, at.z) + box.half.y - box.centre.y + 0.005f;
+        int first = 0, later = 0;
+        for (int i = 0; i < 4; ++i) {
+            at.x += 1e-4f;
+            PairCache cache;
+            std::vector<Manifold> out(max_mesh_manifolds);
+            collide(pair_of({mesh, {}}, {shape, {}}, at, 0.02f), cache, {}, out.data(), max_mesh_manifolds, &near);
+            (i == 0 ? first : later) = near.are_listed() ? looked_at(near) : 0;
+        }
+        if (!near.are_listed()) continue;
+        EXPECT_LT(later, near.count / 2) << kind.name << ' ' << first;
     }
 }
 

@@ -1,68 +1,69 @@
 #include "collision/mesh/candidates.h"
 
-#include <cstring>
-
 namespace lendulet {
 namespace {
 
-// What rounding errs is far below a step.
-uint8_t step_below(float x) { return static_cast<uint8_t>(static_cast<int>(clamp(x - 1.0f, 0.0f, 255.0f))); }
-uint8_t step_above(float x) { return static_cast<uint8_t>(static_cast<int>(clamp(x + 2.0f, 0.0f, 255.0f))); }
+// What is spent in a step at least, of the slack: rounding.
+constexpr float least_spent = 0.01f;
 
-using Steps = Wide<uint8_t, 16>;
-
-Steps load(const uint8_t* p) {
-    Steps s;
-    std::memcpy(&s, p, sizeof s);
-    return s;
+float gap_between(Vec3 lower, Vec3 upper, Vec3 other_lower, Vec3 other_upper) {
+    return max_component(maximum(other_lower - upper, lower - other_upper));
 }
+
+// The list before, by the last digits of triangles' numbers: of two that share them one is forgotten.
+class Before {
+public:
+    explicit Before(const MeshCandidates& c) {
+        for (int i = 0; c.are_listed() && i < c.count; ++i) {
+            index_[i] = c.index[i], away_[i] = c.apart[i] - c.spent;
+            place_[c.index[i] % places] = static_cast<uint8_t>(i + 1);
+        }
+    }
+    // What is left of what the triangle was away; null where it is not known.
+    const float* away(uint32_t triangle) const {
+        const int i = place_[triangle % places] - 1;
+        return i >= 0 && index_[i] == triangle ? &away_[i] : nullptr;
+    }
+
+private:
+    static constexpr uint32_t places = 256;
+    uint8_t place_[places] = {};
+    uint32_t index_[MeshCandidates::capacity];
+    float away_[MeshCandidates::capacity];
+};
 
 }  // namespace
 
-Vec3 MeshCandidates::steps_per_metre() const {
-    Vec3 d = upper - lower;
-    return {255.0f / d.x, 255.0f / d.y, 255.0f / d.z};
-}
-
-void MeshCandidates::find(const TriangleSurface& surface, Vec3 box_lower, Vec3 box_upper, float leeway) {
+void MeshCandidates::find(const TriangleSurface& surface, Vec3 box_lower, Vec3 box_upper, float leeway, float slack) {
+    const Before before(*this);
     const Vec3 wider{leeway, leeway, leeway};
     lower = box_lower - wider, upper = box_upper + wider;
     count = 0;
-    const Vec3 scale = steps_per_metre();
+    spent = 0.0f;
     for_each_triangle(surface, lower, upper, [&](uint32_t triangle) {
         if (count >= capacity) {
             count = capacity + 1;
             return;
         }
+        index[count] = triangle;
+        float& away = apart[count++];
+        if (const float* known = before.away(triangle)) {
+            away = *known;
+            return;
+        }
         Vec3 p[3];
         surface.corners(triangle, p);
-        const Vec3 least = multiply(minimum(minimum(p[0], p[1]), p[2]) - lower, scale);
-        const Vec3 most = multiply(maximum(maximum(p[0], p[1]), p[2]) - lower, scale);
-        for (int k = 0; k < 3; ++k) {
-            low[k][count] = step_below(component(least, k));
-            high[k][count] = step_above(component(most, k));
-        }
-        index[count++] = triangle;
+        const Vec3 least = minimum(minimum(p[0], p[1]), p[2]), most = maximum(maximum(p[0], p[1]), p[2]);
+        away = gap_between(least, most, box_lower, box_upper) - slack;
     });
 }
 
-int MeshCandidates::near(Vec3 box_lower, Vec3 box_upper, uint32_t (&out)[capacity]) const {
-    const Vec3 scale = steps_per_metre();
-    const Vec3 least = multiply(box_lower - lower, scale), most = multiply(box_upper - lower, scale);
-    int found = 0;
-    for (int first = 0; first < count; first += 16) {
-        Steps meet = Steps{} + uint8_t{1};
-        for (int k = 0; k < 3; ++k) {
-            const Steps from = Steps{} + step_below(component(least, k)), to = Steps{} + step_above(component(most, k));
-            meet &= static_cast<Steps>(load(low[k] + first) <= to) & static_cast<Steps>(load(high[k] + first) >= from);
-        }
-        const int left = count - first < 16 ? count - first : 16;
-        for (int i = 0; i < left; ++i) {
-            out[found] = index[first + i];
-            found += meet[i];
-        }
-    }
-    return found;
+void MeshCandidates::move(const Placing& now, float slack) {
+    // A point at r from the position moves by 2 |vec dq| |r| about that at most.
+    const Quat dq = now.turn * conjugate(turn);
+    const float turned = 2.0f * length(Vec3{dq.x, dq.y, dq.z}) * now.reach;
+    spent += length(now.position - position) + turned + maximum(0.0f, now.margin - margin) + least_spent * slack;
+    stand(now);
 }
 
 }  // namespace lendulet

@@ -1,5 +1,7 @@
 // The triangles near a convex shape, kept from step to step: found for a wider box than the shape's, they hold as long
-// as the shape stays within that. What is kept decides nothing but the time.
+// as the shape stays within that. Each has a number of metres that shape and surface must move relative to each other
+// before a test that it failed can come out otherwise; until then it is not read. What is kept decides nothing but the
+// time.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +15,14 @@ struct alignas(64) MeshCandidates {
 
     Vec3 lower, upper;   // the wider box, mesh frame
     int32_t count = -1;  // -1: not looked for; more than the capacity: they are not listed
-    uint32_t unused;
+    // How the shape lay when they were looked through last, mesh frame, and the margin of that.
+    Vec3 position;
+    Quat turn;
+    float margin;
+    // How far any point of the shape may have come towards any triangle since they were found, step by step, m.
+    float spent;
     uint32_t index[capacity];  // in the order of the surface
-    // The triangles' own boxes in steps of 1/255 of the wider one, grown by a step or two.
-    uint8_t low[3][capacity], high[3][capacity];
+    float apart[capacity];     // what must be spent before the triangle can matter
 
     bool hold(Vec3 box_lower, Vec3 box_upper) const {
         return count >= 0 && lower.x <= box_lower.x && lower.y <= box_lower.y && lower.z <= box_lower.z &&
@@ -24,13 +30,32 @@ struct alignas(64) MeshCandidates {
     }
     bool are_listed() const { return count <= capacity; }
 
-    void find(const TriangleSurface& surface, Vec3 box_lower, Vec3 box_upper, float leeway);
-    // Those whose boxes may meet [box_lower, box_upper], which lies in the wider box; their number.
-    int near(Vec3 box_lower, Vec3 box_upper, uint32_t (&out)[capacity]) const;
+    // The shape's box, margin included; `slack`: how far its surface may be off by rounding. Of those that were listed
+    // what is known stays.
+    void find(const TriangleSurface& surface, Vec3 box_lower, Vec3 box_upper, float leeway, float slack);
 
-private:
-    Vec3 steps_per_metre() const;
+    // A shape of which no point is farther than `reach` from its position.
+    struct Placing {
+        Vec3 position;
+        Quat turn;
+        float margin, reach;
+    };
+    // To be told of every place at which they are looked through.
+    void stand(const Placing& now) { position = now.position, turn = now.turn, margin = now.margin; }
+    void move(const Placing& now, float slack);
+
+    // Those that may matter, by their places on the list; their number.
+    int near(uint32_t (&triangles)[capacity], uint8_t (&places)[capacity]) const {
+        int found = 0;
+        for (int i = 0; i < count; ++i) {
+            triangles[found] = index[i], places[found] = static_cast<uint8_t>(i);
+            found += apart[i] <= spent;
+        }
+        return found;
+    }
+    // What was found of one of them: what it is away from mattering, or less.
+    void set_apart(int place, float away) { apart[place] = spent + away; }
 };
-static_assert(sizeof(MeshCandidates) == 704);
+static_assert(sizeof(MeshCandidates) == 576);
 
 }  // namespace lendulet

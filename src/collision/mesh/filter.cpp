@@ -34,6 +34,8 @@ MeshFilter::MeshFilter(const MeshQuery& q, float limit) : surface_(q.surface), f
     b.slack = MeshQuery::level * q.size;
     b.limit = limit + b.slack;
     const CentredBox box = box_of(g);
+    // A ball's core does not turn.
+    reach_ = g.kind == GeometryKind::point ? 0.0f : length(absolute(box.centre) + box.half);
     const float reach = b.limit - g.rounding;
     const Vec3 half = box.half + Vec3{reach, reach, reach};
     b.box_lower = box.centre - half, b.box_upper = box.centre + half;

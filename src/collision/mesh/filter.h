@@ -30,6 +30,10 @@ struct MeshFilterBatch {
     Vec3 box_lower, box_upper;    // of the core and the limit, the shape's axes
     float limit, slack;           // cores farther than that do not matter, give or take the slack, which is in it
 
+    // Out: how far shape and triangle must come nearer to each other, or the limit rise, before the triangle can pass
+    // the tests along axes that do not turn with the shape; of those that pass 0 or less.
+    float away[room];
+
     // Out: those that may touch, or whose plane the shape is beyond, one after the other in their order, in the axes of
     // contacts and relative to the shape's position.
     int live;
@@ -66,6 +70,11 @@ public:
     // Up to `capacity` triangles.
     void test(const uint32_t* triangles, int count);
 
+    // The shape's points are within that of its position, those which a hull is taken for included.
+    float reach() const { return reach_; }
+    // What number i of those tested is away from passing, less what rounding may take.
+    float away(int i) const { return batch_.away[i] - batch_.slack; }
+
     // What is left, by number; and where its parts are.
     int live() const { return batch_.live; }
     uint32_t number(int i) const { return batch_.number[i]; }
@@ -91,6 +100,7 @@ private:
 
     const TriangleSurface& surface_;
     FilterTriangles filter_;
+    float reach_;
     MeshFilterBatch batch_;
 };
 

@@ -80,6 +80,13 @@ LENDULET_FORCE_INLINE Boxes<F> boxes_of(const Vec3T<F> (&p)[3]) {
     return b;
 }
 
+// How far they are from one box along the axis that separates best.
+template <class F>
+LENDULET_FORCE_INLINE F gap(const Boxes<F>& b, Vec3 box_lower, Vec3 box_upper) {
+    const Vec3T<F> below = b.lower - splat<F>(box_upper), above = splat<F>(box_lower) - b.upper;
+    return maximum(maximum(maximum(below.x, above.x), maximum(below.y, above.y)), maximum(below.z, above.z));
+}
+
 // Where they meet one box.
 template <class F>
 LENDULET_FORCE_INLINE auto meet(const Boxes<F>& b, Vec3 box_lower, Vec3 box_upper) {
@@ -140,8 +147,9 @@ LENDULET_FORCE_INLINE void test_block(MeshFilterBatch& b, int first, uint32_t us
     const F zero{};
     V p[3];
     for (int k = 0; k < 3; ++k) p[k] = load<F>(b.corner[k], first) - splat<F>(b.position);
-    auto near = meet(boxes_of(p), b.lower, b.upper);
-    if ((mask_bits(near) & used) == 0) return;
+    F away_from = gap(boxes_of(p), b.lower, b.upper);
+    auto near = away_from <= zero;
+    if ((mask_bits(near) & used) == 0) return store_wide(b.away + first, away_from);
 
     V normal = load<F>(b.front, first);
     auto behind = dot(normal, splat<F>(b.centre) - p[0]) < zero;
@@ -159,12 +167,17 @@ LENDULET_FORCE_INLINE void test_block(MeshFilterBatch& b, int first, uint32_t us
     auto live = near & (height <= limit);
     const F beyond = load_wide<F>(b.lean + first) * limit, outside = splat<F>(10.0f * b.slack);
     auto beside = zero > zero;
+    F across = splat<F>(-3e38f), longest = zero;
     for (int k = 0; k < 3; ++k) {
         size[k] = length(out[k]);
+        longest = maximum(size[k], longest);
         const F separation = -reach[k + 1] - dot(out[k], p[k]);
+        across = maximum(separation - beyond * size[k], across);
         live = live & (separation <= beyond * size[k]);
         beside = beside | (separation > outside * size[k]);
     }
+    away_from = maximum(maximum(height - limit, across / longest), away_from);
+    store_wide(b.away + first, away_from);
     auto within_limit = meet(boxes_of(p), b.box_lower, b.box_upper);
     live = live & (within_limit | (height < zero));
     if ((mask_bits(live) & used) == 0) return;

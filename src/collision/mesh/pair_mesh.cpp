@@ -57,6 +57,8 @@ struct MeshCollision : MeshQuery {
 // By how much the box within which triangles are kept is wider than needed: of the shape's size and of the margin,
 // which tells how far it may move in a step.
 constexpr float leeway_of_size = 0.08f, leeway_of_margin = 2.0f, most_leeway = 0.5f;
+// What is spent is a sum, which must not lose digits; of the shape's size.
+constexpr float most_spent = 50.0f;
 // Wider than rounding, where none are kept: whether a triangle is near is the filter's to say.
 constexpr float least_leeway = 0.01f;
 
@@ -70,13 +72,25 @@ void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&
         visit(triangles, filter);
     };
     const Vec3 lower = q.position + q.lower, upper = q.position + q.upper;
-    if (kept != nullptr && !kept->hold(lower, upper)) {
-        float leeway = leeway_of_size * q.size + leeway_of_margin * q.pair.margin;
-        kept->find(q.surface, lower, upper, minimum(leeway, most_leeway * q.size));
-    }
     static_assert(MeshCandidates::capacity <= MeshFilter::capacity);
     uint32_t waiting[MeshCandidates::capacity];
-    if (kept != nullptr && kept->are_listed()) return look_through(waiting, kept->near(lower, upper, waiting));
+    if (kept != nullptr) {
+        const MeshCandidates::Placing now{q.position, q.turn, q.pair.margin, filter.reach()};
+        const float slack = level * q.size;
+        if (kept->count < 0) kept->stand(now);
+        else kept->move(now, slack);
+        if (!kept->hold(lower, upper) || kept->spent > most_spent * q.size) {
+            const float leeway = leeway_of_size * q.size + leeway_of_margin * q.pair.margin;
+            kept->find(q.surface, lower, upper, minimum(leeway, most_leeway * q.size), slack);
+        }
+        if (kept->are_listed()) {
+            uint8_t places[MeshCandidates::capacity];
+            const int count = kept->near(waiting, places);
+            look_through(waiting, count);
+            for (int i = 0; i < count; ++i) kept->set_apart(places[i], filter.away(i));
+            return;
+        }
+    }
     int count = 0;
     const float leeway = least_leeway * q.size;
     const Vec3 wider{leeway, leeway, leeway};
