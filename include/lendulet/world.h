@@ -111,6 +111,7 @@ struct StepStatistics {
     int bodies, awake_bodies, pairs, manifolds, contact_points, colours, overflow_manifolds, joints;
     int hard_bodies;        // awake bodies of islands that took more substeps than are set (docs/solver.md)
     int flowing_bodies;     // ... and of large islands in motion, which took half of them
+    int rested_bodies;      // of the former those that rested, so that most substeps were left out
     float max_penetration;  // deepest overlap after the step, m
     int capped_bodies;      // bodies whose speed was cut to the limit
     int contained_bodies;   // bodies that were put back and stopped: the state of one in their island went non-finite

@@ -1,5 +1,7 @@
 #include "solver/solver.h"
 
+#include <cmath>
+
 #include "solver/impacts.h"
 #include "solver/stand_ins.h"
 
@@ -11,6 +13,8 @@ constexpr int contacts_per_part = 64;  // the fewest contacts of a colour that a
 // Fewer contacts, joints and bodies in all are solved on one thread: a pass is some ten loops, which then take a
 // microsecond each, and two threads took a quarter longer for them than one.
 constexpr int fewest_shared = 2500;
+// Substeps after which it is first asked whether all bodies rest; then after twice as many, and so on.
+constexpr int first_look = 4;
 
 // Calls run(begin, end) on parts of a range of bodies, in whole blocks.
 template <class Run>
@@ -18,6 +22,34 @@ void for_each_body_block(TaskPool& tasks, BodyRange range, Run&& run) {
     int first = range.begin / block_bodies, blocks = (range.end - range.begin + block_bodies - 1) / block_bodies;
     tasks.for_each(blocks, bodies_per_task / block_bodies,
                    [&](int begin, int end, int) { run((first + begin) * block_bodies, (first + end) * block_bodies); });
+}
+
+bool exceeds(const BodyBlock::Lanes (&x)[3], const BodyBlock::Lanes (&start)[3], float most) {
+    bool any = false;
+    for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < block_bodies; ++l) any |= std::fabs(start[k][l] + x[k][l]) > most;
+    return any;
+}
+
+bool exceeds(const float (&x)[3], const float (&start)[3], float most) {
+    bool any = false;
+    for (int k = 0; k < 3; ++k) any |= std::fabs(start[k] + x[k]) > most;
+    return any;
+}
+
+// Whether the last substep left all bodies slow, by the velocities that they moved by and by those that they ended
+// with.
+bool all_rest(const SolverBodies& bodies, BodyRange range, float most) {
+    for (int i = range.begin; i < range.end; i += block_bodies) {
+        const BodyBlock& b = bodies.blocks[static_cast<size_t>(i / block_bodies)];
+        if (exceeds(b.v_ref, b.start_v, most) || exceeds(b.w_ref, b.start_w, most)) return false;
+        for (int l = 0; l < block_bodies; ++l) {
+            const BodyState& x = bodies.state[static_cast<size_t>(i + l)];
+            const BodyStart& start = bodies.start[static_cast<size_t>(i + l)];
+            if (exceeds(x.v, start.v, most) || exceeds(x.w, start.w, most)) return false;
+        }
+    }
+    return true;
 }
 
 }  // namespace
@@ -37,6 +69,10 @@ SubstepConstants substep_constants(const SolverSettings& settings) {
 
 bool Solver::is_small(int bodies) const {
     return schedule_.order.count() + joints_.joint_count() + bodies < fewest_shared;
+}
+
+bool Solver::may_rest(const SolverSettings& settings, int substep) const {
+    return settings.rest_speed > 0.0f && joints_.empty() && substep >= first_look && (substep & (substep - 1)) == 0;
 }
 
 template <class Run>
@@ -147,6 +183,7 @@ void Solver::prepare_joints(TaskPool& tasks, SolverBodies& bodies, JointList joi
 // and its solve before the drift, each with no barrier between.
 void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records,
                    BodyRange range) {
+    rested_ = false;
     if (range.begin >= range.end) return;
     const TaskPool::Alone alone(tasks, is_small(range.end - range.begin));
     const Pass warm_start = kernels_.warm_start, solve = kernels_.solve, relax = kernels_.relax;
@@ -164,12 +201,19 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
         k.repeat_scale = substep == 1 ? 2.0f : 1.0f;  // the first substep began with half a kick
         k.end_scale = settings.substeps > 1 ? 0.5f : 1.0f;
         // Impacts and who watches look at all bodies at once, which the relax pass must have left.
+        const bool looks = may_rest(settings, substep);
         bool relaxed = k.first;
-        if (!relaxed && (!impacts_.empty() || watched_.count > 0)) {
+        if (!relaxed && (!impacts_.empty() || watched_.count > 0 || looks)) {
             for_each_tile(tasks, range, [&](int tile, BodyRange) { pass_tile(tile, bodies, before, relax); });
             relaxed = true;
         }
         if (watched_.count > 0 && !k.first) note_watched(tasks, bodies, records, k.h, false);
+        rested_ = looks && all_rest(bodies, range, settings.rest_speed);
+        if (rested_) {  // those who watch are told of every substep
+            for (int left = substep + 1; left < settings.substeps && watched_.count > 0; ++left)
+                note_watched(tasks, bodies, records, k.h, false);
+            break;
+        }
         if (!impacts_.empty()) {
             if (passing_ > 0 && !k.first) mark_disturbed(bodies, range, disturbed_.data());
             find_meetings(tasks, bodies, records, k);
@@ -200,7 +244,7 @@ void Solver::solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies
         pass_between(tasks, bodies, k, relax);
     }
     for_each_tile(tasks, range, [&](int tile, BodyRange r) {
-        pass_tile(tile, bodies, k, relax);
+        if (!rested_) pass_tile(tile, bodies, k, relax);
         kernels_.settle(bodies, r.begin, r.end);
     });
     if (watched_.count > 0) note_watched(tasks, bodies, records, k.h, true);

@@ -24,6 +24,9 @@ struct SolverSettings {
     float dt;
     int substeps;
     float gravity;  // magnitude, for the bounce threshold, m/s^2
+    // Where no body moves by more than this in m/s or rad/s after the first few substeps, the others are left out; 0:
+    // never. For contacts alone.
+    float rest_speed = 0.0f;
 };
 
 // Share of the overlap that a biased pass undoes in one substep, and of the impulse that it gives up. A stack of n
@@ -94,6 +97,8 @@ public:
     void solve(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, const ContactRecord* records) {
         solve(tasks, settings, bodies, records, {0, bodies.count});
     }
+    // Whether the last solve() left substeps out, since all of its bodies rested.
+    bool rested() const { return rested_; }
     // Bodies of the range, of which no contact and no joint knows, take all of settings.dt at once.
     void coast(TaskPool& tasks, const SolverSettings& settings, SolverBodies& bodies, BodyRange range) const;
     // Writes impulses and final separations back.
@@ -115,6 +120,8 @@ public:
 private:
     // Whether several threads would take longer than one for its contacts and joints and so many bodies.
     bool is_small(int bodies) const;
+    // Whether it is asked, after so many substeps, if all bodies rest.
+    bool may_rest(const SolverSettings& settings, int substep) const;
     // Calls run(kernels, group, begin, end) for all groups [first, last).
     template <class Run>
     void run_groups(int first, int last, Run&& run) const;
@@ -151,7 +158,8 @@ private:
     Array<int32_t> last_impacts_;   // by body: the last of these so far that it is B of
     Array<MeetingBlock> meetings_;  // of these
     int passing_ = 0;               // how many of these pass: the last
-    Array<uint8_t> disturbed_;      // by body, see ImpactList
+    bool rested_ = false;
+    Array<uint8_t> disturbed_;  // by body, see ImpactList
     const ContactExtra* extras_ = nullptr;
     WatchList watched_;
     Array<ImpactContact> foreseen_;         // those that have rows and are asked how fast they meet

@@ -54,6 +54,9 @@ int class_for(const IslandLoad& l, Load load, float gravity, float dt, int subst
 // Whether an island of many bodies moves in most places: nothing stands there.
 bool is_loose(const IslandLoad& l) { return !l.jointed && l.contacts >= fewest_loose && 2 * l.stirred > l.samples; }
 
+// What rests leaves most of its substeps out, however many they are; to go on with fewer it would have to sink first.
+bool rests_cheaply(const IslandLoad& l) { return l.still && l.rests && !l.jointed; }
+
 // Whether half of the substeps do for what is loose.
 bool can_flow(const IslandLoad& l, float gravity, float dt, int substeps) {
     if (l.contacts < fewest_contacts || !(gravity > 0.0f) || substeps % 2 != 0 || substeps < 2 * fewest_substeps)
@@ -79,6 +82,7 @@ void decide_substeps(IslandLoad& l, float gravity, float dt, int substeps) {
         l.pressed = asked > larger(kept, c) ? static_cast<uint8_t>(l.pressed + 1) : uint8_t{0};
         if (l.pressed >= lasting_load) c = asked, l.pressed = 0;
         bool bearable = kept > 0 && (loose || class_for(l, all, gravity, dt, substeps, kept_reserve) < kept);
+        bearable &= !rests_cheaply(l);
         l.waited = bearable ? static_cast<uint8_t>(l.waited + 1) : uint8_t{0};
         const bool stands = l.rests && all.sinking > 0.0f;
         if (l.waited >= (loose ? loose_patience : stands ? patience : falling_patience)) --kept, l.waited = 0;

@@ -17,6 +17,12 @@ inline bool is_stirred(const IslandLoad& b, Vec3 other, float gravity) {
     return length_squared(b.velocity - other) > (2.0f * part) * gravity * b.radius;
 }
 
+// Hard islands without joints in which nothing moves faster rest, and leave substeps out, m/s: what a fall of 10 us
+// gives (docs/solver.md, What rests). 0 where nothing may: surfaces that run could do so more slowly.
+inline float rest_speed(const WorldData& world) {
+    return world.has_extras ? 0.0f : 1e-5f * length(world.config.gravity);
+}
+
 // A cube's edge from its diagonal.
 inline float size_of(float radius) { return 1.15f * radius; }
 

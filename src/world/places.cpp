@@ -26,6 +26,7 @@ void place_bodies(WorldData& world, float dt) {
     for (int c = 0; c < classes; ++c) {
         const TilePlaces places(place, counts[c]);
         range_of(c) = {place, places.end()};
+        if (c != alone_part) world.parts[c].body_count = counts[c];
         place = places.end();
         firsts[c] = awake;
         awake += counts[c];

@@ -1,6 +1,7 @@
 // One step of a world, as a table of contents.
 #include <chrono>
 
+#include "world/island_class.h"
 #include "world/validate.h"
 #include "world/world_data.h"
 
@@ -100,8 +101,10 @@ void step(WorldData& world, float dt, bool last) {
     for (int c = 0; c < solver_parts; ++c) {
         SolverSettings s = settings;
         s.substeps = static_cast<int>(substep_multiple(c) * static_cast<float>(settings.substeps));
+        if (c > 0 && c < substep_classes) s.rest_speed = rest_speed(world);
         world.solvers[c].solve(world.tasks, s, world.solver_bodies, world.records.data(), world.parts[c].bodies);
     }
+    note_rest(world);
     world.solvers[0].coast(world.tasks, settings, world.solver_bodies, world.alone);
     clock.lap(Stage::solve);
     for (Solver& solver : world.solvers) {
@@ -136,6 +139,7 @@ void finish_step(WorldData& world, float dt) {
     s.joints = world.joints.count();
     s.hard_bodies = world.hard_bodies;
     s.flowing_bodies = world.flowing_bodies;
+    s.rested_bodies = world.rested_bodies;
     s.bytes_per_body = BodyStore::bytes_per_body() + sizeof(BodyState) + sizeof(BodyInertia) + sizeof(BodyStart) +
                        sizeof(BodyMotion) + sizeof(BodyPlace) + sizeof(BodyBlock) / block_bodies;
     s.bytes_per_manifold = sizeof(ContactRecord) + sizeof(FoundSeparations) + sizeof(ColliderPair) +

@@ -20,6 +20,7 @@ namespace {
 constexpr int contacts_per_task = 512;
 constexpr float resting_speed = 0.5f;  // m/s; what moves faster is no load but an impact
 constexpr int calm_steps = 3;  // that a body must have been slow for: what lands carries many times its weight for one
+constexpr int rested = calm_steps + 1;  // in place of them: so long, and its island rested in the last step
 
 bool moves(const WorldData& world, uint32_t slot) {
     const BodyMomenta& m = world.bodies.momenta[slot];
@@ -61,6 +62,7 @@ struct LoadSurvey {
     const Vec3 down = world.config.gravity;
     const float gravity = length(down);
     const float weight;  // what a substep of gravity gives to 1 kg, N s
+    const float still_speed = rest_speed(world);
 
     LoadSurvey(WorldData& w, float dt) : world(w), weight(gravity * dt / static_cast<float>(w.config.solver_steps)) {}
 
@@ -93,8 +95,9 @@ void LoadSurvey::begin(uint32_t slot) {
     l.calm = !l.moves            ? uint8_t{calm_steps}
              : !slow             ? uint8_t{0}
              : calm < calm_steps ? static_cast<uint8_t>(calm + 1)
-                                 : calm;
+                                 : uint8_t{calm_steps};
     l.slow = l.rests = l.calm >= calm_steps;
+    l.still = calm == rested && length_squared(l.velocity) <= still_speed * still_speed;
     l.inverse_mass = bodies.mass[slot].inverse_mass;
     l.radius = bodies.info[slot].radius;
     l.carried = bodies.mass[slot].mass * bodies.info[slot].gravity_factor;
@@ -137,6 +140,7 @@ uint32_t LoadSurvey::join(uint32_t a, uint32_t b) {
     x.tied |= y.tied;
     x.jointed |= y.jointed;
     x.rests |= y.rests;
+    x.still &= y.still;
     return a;
 }
 
@@ -315,6 +319,19 @@ void choose_substeps(WorldData& world, float dt) {
         if (!l.decided) decide_substeps(l, survey.gravity, dt, world.config.solver_steps);
     }
     if (!world.first_loads.empty()) settle_first_loads(world, dt);
+}
+
+void note_rest(WorldData& world) {
+    const uint32_t* next = world.awake.data();
+    world.rested_bodies = 0;
+    for (int c = 0; c < solver_parts; ++c) {
+        const int count = world.parts[c].body_count;
+        if (world.solvers[c].rested()) {
+            world.rested_bodies += count;
+            for (int i = 0; i < count; ++i) world.island_loads[next[i]].calm = rested;
+        }
+        next += count;
+    }
 }
 
 int part_for(WorldData& world, uint32_t slot, float dt) {

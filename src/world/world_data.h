@@ -60,14 +60,15 @@ struct alignas(64) IslandLoad {
     uint8_t waited = 0;                   // steps since when fewer substeps would do
     uint8_t pressed = 0;                  // steps since when it feels loads that take more
     uint8_t substeps = 0;                 // class
-    uint8_t calm = 0;                     // steps for which it has been slow, at most calm_steps; `slow`: for so many
-    bool meets_moving = false;            // has a contact with another dynamic body
-    bool meets_fixed = false;             // has one with what constraints do not move
-    bool in_group = false;                // in one of WorldData::joint_groups
-    bool held = false;                    // rests on a contact that carries already
-    bool slept = false;                   // sleeps, and goes on from here when it wakes
+    uint8_t calm = 0;  // steps for which it has been slow, at most calm_steps, or `rested`; `slow`: for so many
+    bool meets_moving = false;  // has a contact with another dynamic body
+    bool meets_fixed = false;   // has one with what constraints do not move
+    bool in_group = false;      // in one of WorldData::joint_groups
+    bool held = false;          // rests on a contact that carries already
+    bool slept = false;         // sleeps, and goes on from here when it wakes
     bool moves = false, slow = false;
     bool touches = false;  // is in contact
+    bool still = false;    // it rested and still does; of a root, all of its island: see rest_speed()
     // Of a root's island.
     alignas(64) int contacts = 0;
     int samples = 0, stirred = 0;           // contacts looked at, and those whose bodies move against each other
@@ -126,6 +127,7 @@ struct BodyPair {
 // Stretches of the packed bodies, the active contacts and the active joints that are solved together.
 struct SolverPart {
     BodyRange bodies;
+    int body_count;  // without empty places
     ContactCut cut;
     int first_contact, contact_count;  // those that pass last
     int row_count;                     // of the others
@@ -218,6 +220,7 @@ struct WorldData {
     BodyRange alone{0, 0};   // bodies behind them that nothing acts on but gravity: they take the step at once
     int hard_bodies = 0;     // of classes above the setting's
     int flowing_bodies = 0;  // of islands that flow
+    int rested_bodies = 0;   // of hard islands that left substeps out
     bool has_packed_kinematic = false;  // some packed bodies are moved by hand
     ScheduleRoom schedule_room;
     size_t expected = 0;          // colliders for whose contacts there is room, see expect_contacts()
@@ -289,6 +292,8 @@ void break_joints(WorldData& world);
 
 // The place of WorldData::alone, behind all parts.
 inline constexpr int alone_part = solver_parts;
+// After the solve: which bodies rested, so that most of their substeps were left out.
+void note_rest(WorldData& world);
 // 0 .. solver_parts - 1 or alone_part, for a body that is about to be packed; after choose_substeps().
 int part_for(WorldData& world, uint32_t slot, float dt);
 // Whether a contact bounces in an island so large that blows are not followed through it from body to body; those that
