@@ -28,11 +28,11 @@ Status valid_offset(Vec3 offset, const char* what, const char* call);
 Error no_such(const Slots& slots, uint32_t generation, const char* call, const char* what);
 // A material with the world's defaults, where its coefficients are in range: bad_material.
 Result<Surface> make_surface(const WorldConfig& config, const Material& material, const char* call);
-// Error: bad_collider (bits that are none).
-// kg.
+// Of a body, kg. Error: bad_mass (out of range, not a number).
 Status check_mass(float mass, const char* call);
 // Principal moments of inertia, kg m^2: finite, and so are their inverses.
 bool can_be_inverted(Vec3 inertia);
+// Error: bad_collider (bits that are none).
 Status check_events(Events events, const char* call);
 // Of a body: finite, damping not negative.
 Status check_drag(float linear_damping, float angular_damping, float gravity_factor, const char* call);
