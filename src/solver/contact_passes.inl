@@ -11,9 +11,67 @@ LENDULET_FORCE_INLINE Wide<float, W> least_lever(const ContactRow<W, P>& c) {
     return splat<F>(0.999f) * sum;
 }
 
-// Friction of the whole patch as one block (t1, t2, twist), limited by the round Coulomb cone on the total normal
-// impulse: it sticks while the impulse that stops the sliding is within the static cone, and slides with the dynamic
-// coefficient otherwise (thesis 3.3.4 with THESIS-NOTES). Returns the impulse on B and the angular impulse about n.
+// x with M x = f by factors L D L^T; `m`: 11 12 13 22 23 33 of M. Zero where M has no inverse.
+template <class F>
+LENDULET_FORCE_INLINE Vec3T<F> solve_symmetric(const F m[6], Vec3T<F> f) {
+    const F d1 = inverse_or_zero(m[0]), l21 = d1 * m[1], l31 = d1 * m[2], e23 = m[4] - l21 * m[2];
+    const F d2 = inverse_or_zero(m[3] - l21 * m[1]), l32 = d2 * e23;
+    const F z2 = f.y - l21 * f.x, z3 = f.z - l31 * f.x - l32 * z2;
+    const F x3 = inverse_or_zero(m[5] - l31 * m[2] - l32 * e23) * z3;
+    const F x2 = d2 * z2 - l32 * x3;
+    return {d1 * f.x - l21 * x2 - l31 * x3, x2, x3};
+}
+
+// What a patch drags that slides, spins or does both: Coulomb's law at every point, each with its share of the load
+// against its own way, so that the patch holds less by force where it spins and less by torque where it slides.
+// `stop`: the impulse (t1, t2, twist) that stops all motion; `spare`: what of it would be beyond the limits of slip and
+// of spin, each as if it were alone. With q the motion that is left, turned round, and p_j = J_j q the way of a point
+// of it,
+//
+//     M q + mu sum of lambda_j J_j^T p_j / |p_j| = stop.
+//
+// One step of iterated weights, with |p_j| of the motion that `spare` would stop, makes that linear and implicit: what
+// would overshoot comes to rest, and slow slip of what spins fast meets a force in proportion to it. No point gives
+// more than mu lambda_j.
+template <int W, int P>
+LENDULET_FORCE_INLINE Vec3T<Wide<float, W>> drag_of_points(const ContactRow<W, P>& c, Vec3T<Wide<float, W>> stop,
+                                                           Vec3T<Wide<float, W>> spare) {
+    using F = Wide<float, W>;
+    const F mu = c.dynamic_friction, zero = splat<F>(0.0f), one = splat<F>(1.0f), least = splat<F>(1e-20f);
+    const Vec3T<F> left = solve_symmetric(c.friction.mass, spare);
+    F slowness[P], most = zero;
+    for (int j = 0; j < P; ++j) {
+        const F x = left.x - left.z * c.p[j].v, y = left.y + left.z * c.p[j].u;
+        slowness[j] = x * x + y * y;
+        most = maximum(most, select(c.p[j].impulse > zero, slowness[j], zero));
+    }
+    // A point about which the patch turns would be a weight without end. Points that carry nothing have no say.
+    most = maximum(splat<F>(1e-6f) * most, least);
+    F m[6];
+    for (int i = 0; i < 6; ++i) m[i] = c.friction.mass[i];
+    for (int j = 0; j < P; ++j) {
+        slowness[j] = one / square_root(maximum(slowness[j], most));
+        const F u = c.p[j].u, v = c.p[j].v, weight = mu * c.p[j].impulse * slowness[j];
+        m[0] = m[0] + weight;
+        m[2] = m[2] - weight * v;
+        m[3] = m[3] + weight;
+        m[4] = m[4] + weight * u;
+        m[5] = m[5] + weight * (u * u + v * v);
+    }
+    const Vec3T<F> q = solve_symmetric(m, stop);
+    Vec3T<F> sum = zero_vector<F>();
+    for (int j = 0; j < P; ++j) {
+        const F x = q.x - q.z * c.p[j].v, y = q.y + q.z * c.p[j].u;
+        const F share = mu * c.p[j].impulse * minimum(slowness[j], one / square_root(maximum(x * x + y * y, least)));
+        sum = sum + Vec3T<F>{share * x, share * y, share * (c.p[j].u * y - c.p[j].v * x)};
+    }
+    return sum;
+}
+
+// Friction of the whole patch as one block (t1, t2, twist): it sticks while the impulses that stop the slip and the
+// spin are within their static limits, that of the slip a round cone on the total normal impulse, and otherwise moves
+// with the dynamic coefficient (thesis 3.3.4 with THESIS-NOTES). Returns the impulse on B and the angular impulse about
+// n.
 template <int W, int P>
 LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float, W>> t2, Vec3T<Wide<float, W>> slip,
                                           Vec3T<Wide<float, W>> spin, Vec3T<Wide<float, W>>& linear,
@@ -37,43 +95,53 @@ LENDULET_FORCE_INLINE void solve_friction(ContactRow<W, P>& c, Vec3T<Wide<float,
     F sticking = c.static_friction * total, sliding = c.dynamic_friction * total;
     F size2 = f1 * f1 + f2 * f2;
     auto slides = size2 > sticking * sticking;
-    // Without load nothing sticks, also where the square of what slides is too small a number.
-    auto keeps = select(slides, zero, select(total > zero, one, zero)) > zero;
-    auto drags = select(slides, sliding, zero) > zero;
-    F held1 = select(keeps, f1, zero), held2 = select(keeps, f2, zero);
-    if (mask_bits(drags)) {
-        const F tangential[3] = {m[0], m[1], P > 1 ? m[3] : m[2]};
-        F cut1 = f1, cut2 = f2;
-        cut_to_limit(cut1, cut2, tangential, square_root(size2), sliding);
-        held1 = select(drags, cut1, held1);
-        held2 = select(drags, cut2, held2);
-        if constexpr (P > 1) {
-            // The twist that stops with the slip that is left, instead of without any.
-            F d = inverse_or_zero(m[0] * m[3] - m[1] * m[1]);
-            F along1 = d * (m[3] * m[2] - m[1] * m[4]), along2 = d * (m[0] * m[4] - m[1] * m[2]);
-            ft = select(drags, ft + (along1 * (held1 - f1) + along2 * (held2 - f2)), ft);
-        }
-    }
-    f1 = held1;
-    f2 = held2;
-    linear = (f1 - c.friction.tangent[0]) * c.t1 + (f2 - c.friction.tangent[1]) * t2;
-    c.friction.tangent[0] = f1;
-    c.friction.tangent[1] = f2;
-    angular = zero_vector<F>();
+    F held1, held2, held = zero;
     if constexpr (P > 1) {
         const F size = absolute(ft);
         F hold = least_lever<W, P>(c) * c.static_friction;
-        if (mask_bits(select(size > hold, total, zero) > zero)) {
+        // Without load nothing sticks, also where the square of what slides is too small a number.
+        F moves = select(slides, total, select(size > hold, total, zero));
+        F kept = total;
+        Vec3T<F> drag = zero_vector<F>();
+        if (mask_bits(moves > zero)) {
             F lever = zero;
             for (int j = 0; j < P; ++j)
                 lever = lever + c.p[j].impulse * square_root(c.p[j].u * c.p[j].u + c.p[j].v * c.p[j].v);
             hold = c.static_friction * lever;
-            F slide = c.dynamic_friction * lever;
-            ft = select(size > hold, select(ft > zero, slide, zero - slide), ft);
+            kept = select(slides, zero, select(size > hold, zero, total));
+            const F tangential[3] = {m[0], m[1], m[3]};
+            F cut1 = f1, cut2 = f2;
+            cut_to_limit(cut1, cut2, tangential, square_root(size2), sliding);
+            const F d = inverse_or_zero(m[0] * m[3] - m[1] * m[1]);
+            const F left1 = select(slides, f1 - cut1, zero), left2 = select(slides, f2 - cut2, zero);
+            // The twist that stops with the slip that is left, instead of without any.
+            const F along1 = d * (m[3] * m[2] - m[1] * m[4]), along2 = d * (m[0] * m[4] - m[1] * m[2]);
+            const F spare = ft - (along1 * left1 + along2 * left2), most = c.dynamic_friction * lever;
+            drag =
+                drag_of_points<W, P>(c, {f1, f2, ft}, {left1, left2, ft - maximum(minimum(spare, most), zero - most)});
         }
-        ft = select(total > zero, ft, zero);
-        angular = (ft - c.friction.twist) * c.n;
-        c.friction.twist = ft;
+        const auto keeps = kept > zero, drags = moves > zero;
+        held1 = select(keeps, f1, select(drags, drag.x, zero));
+        held2 = select(keeps, f2, select(drags, drag.y, zero));
+        held = select(keeps, ft, select(drags, drag.z, zero));
+    } else {
+        auto keeps = select(slides, zero, select(total > zero, one, zero)) > zero;
+        auto drags = select(slides, sliding, zero) > zero;
+        held1 = select(keeps, f1, zero), held2 = select(keeps, f2, zero);
+        if (mask_bits(drags)) {
+            F cut1 = f1, cut2 = f2;
+            cut_to_limit(cut1, cut2, m, square_root(size2), sliding);
+            held1 = select(drags, cut1, held1);
+            held2 = select(drags, cut2, held2);
+        }
+    }
+    linear = (held1 - c.friction.tangent[0]) * c.t1 + (held2 - c.friction.tangent[1]) * t2;
+    c.friction.tangent[0] = held1;
+    c.friction.tangent[1] = held2;
+    angular = zero_vector<F>();
+    if constexpr (P > 1) {
+        angular = (held - c.friction.twist) * c.n;
+        c.friction.twist = held;
     }
 }
 

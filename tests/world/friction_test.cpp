@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "lendulet/lendulet.h"
@@ -81,6 +82,66 @@ TEST(Friction, WhatSlidesGivesTheSameBitsForEveryWidth) {
         if (width == 1) expected = world.hash();
         EXPECT_EQ(world.hash(), expected) << width;
     }
+}
+
+// A ring of radius r on a slope, by Coulomb's law at each of its points: until it has stopped.
+struct RingEnd {
+    double x, time;
+};
+RingEnd slide_ring(double speed, double spin, double r, double mu, double slope) {
+    constexpr int n = 64;
+    constexpr double h = 2e-4;
+    double x = 0.0, time = 0.0;
+    for (; time < 10.0 && (speed > 2e-3 || spin > 0.02); time += h) {
+        double force = 0.0, torque = 0.0;
+        for (int i = 0; i < n; ++i) {
+            const double angle = 2.0 * std::numbers::pi * (i + 0.5) / n, px = r * std::cos(angle),
+                         pz = r * std::sin(angle);
+            const double vx = speed + spin * pz, vz = -spin * px,
+                         share = -mu * g * std::cos(slope) / (n * std::hypot(vx, vz));
+            force += share * vx;
+            torque += share * (pz * vx - px * vz);
+        }
+        speed += h * (force + g * std::sin(slope));
+        spin += h * torque / (0.5 * r * r);
+        x += h * speed;
+    }
+    return {x, time};
+}
+
+// What slides and spins at once is slowed less in either: the disc goes 1.64 m instead of the 1.02 without spin, and
+// both end together. On a slope below the angle of friction what spins slides down, until it spins no more.
+TEST(Friction, SlidingAndSpinningShareOneLimit) {
+    struct Case {
+        float speed, spin, mu, slope;
+    };
+    for (const Case& c : {Case{2.0f, 0.0f, 0.2f, 0.0f},
+                          {2.0f, 5.0f, 0.2f, 0.0f},
+                          {2.0f, 20.0f, 0.2f, 0.0f},
+                          {0.3f, 30.0f, 0.2f, 0.0f},
+                          {0.0f, 60.0f, 0.3f, 0.1f}})
+        for (float step : {dt, dt / 4.0f}) {
+            const float r = 0.15f, half = 0.005f;
+            World world = WorldBuilder{}
+                              .gravity({g * std::sin(c.slope), -g * std::cos(c.slope), 0.0f})
+                              .friction(c.mu)
+                              .sleep(false)
+                              .build()
+                              .value();
+            world.add_static_body({.shape = Plane{}}).value();
+            const RigidBodyRef disc = world.get(world
+                                                    .add_rigid_body({.shape = Cylinder{half, r},
+                                                                     .position = {0.0f, half, 0.0f},
+                                                                     .velocity = {c.speed, 0.0f, 0.0f},
+                                                                     .angular_velocity = {0.0f, c.spin, 0.0f}})
+                                                    .value());
+            const RingEnd exact = slide_ring(c.speed, c.spin, r, c.mu, c.slope);
+            for (int i = 0; static_cast<float>(i) * step < static_cast<float>(exact.time) + 0.1f; ++i)
+                world.update(step).value();
+            // Four points in the ring's place, which do not carry alike.
+            EXPECT_NEAR(disc.position().x, exact.x, 0.02 * exact.x) << c.speed << " " << c.spin << " " << step;
+            EXPECT_LT(length(disc.velocity()) + r * length(disc.angular_velocity()), 1e-3f) << c.spin << " " << step;
+        }
 }
 
 // A box that meets the floor with one corner and slides on is pushed against the slip that is left there.
