@@ -32,8 +32,8 @@ struct SolverSettings {
 // Share of the overlap that a biased pass undoes in one substep, and of the impulse that it gives up. A stack of n
 // equal boxes sinks by (leak / bias) g h^2 n per face, and stands up to a height of about (0.98 bias / (leak g
 // h^2))^(1/3).
-inline constexpr float contact_bias = 0.3f;
-inline constexpr float contact_leak = 0.15f;
+inline constexpr float contact_bias = 0.35f;
+inline constexpr float contact_leak = 0.175f;
 // Impacts slower than this many times |g| h do not bounce: less than a substep's fall cannot be told from rest.
 inline constexpr float bounce_threshold_substeps = 4.0f;
 

@@ -97,7 +97,7 @@ TEST(Impacts, OfBallsAndCapsulesAddNoEnergy) {
     for (const Shape& shape : {shapes[1], shapes[3]})
         for (float spin : {0.0f, 10.0f})
             for (const Surface& s : {Surface{0.0f, 1.0f, 0.0f}, {0.6f, 1.0f, 0.0f}, {0.6f, 1.0f, 1.0f}})
-                EXPECT_LT(largest_rise(shape, s, spin, true), 1e-5) << spin << " " << s.friction << " " << s.tangential;
+                EXPECT_LT(largest_rise(shape, s, spin, true), 2e-5) << spin << " " << s.friction << " " << s.tangential;
 }
 
 // Nor do blows without restitution, whose friction is not repeated, but for what undoing an overlap may cost.
