@@ -1,4 +1,4 @@
-// Everything: include this.
+// Everything but the character (character.h): include this.
 #pragma once
 
 #include "lendulet/body.h"
