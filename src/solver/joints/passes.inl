@@ -6,6 +6,12 @@
 // them by those of its present arms and axes. So all impulses act at shared points of the present, linear and angular
 // momentum are conserved together, and no pass over the rows is spent on warm starting.
 //
+// Until its rows are solved again a joint has turned its bodies by that: by h w P r / I, for a force P along an arm
+// that turns with w. For a body of which the moment I is small beside m r^2 this is no small part of w but (h w)^2 m
+// r^2 / I times it. What is taken from velocities for more than the rows themselves, which undo it, is therefore taken
+// from those before: the motion's curvature. And what soft rows give up is a share of the impulse as it acts now
+// (turn_held()), not of what it was along the old arms: else a tenth of that turning would stay.
+//
 // Where nothing but joints constrains a group of bodies ("split"), the biased pass is the only one of a substep. It
 // chooses impulses along the axes now so that the gap vanishes at the end of the drift, as SHAKE does (Ryckaert,
 // Ciccotti, Berendsen 1977; Hairer, Lubich, Wanner, "Geometric Numerical Integration", VII.1): with forces applied in
@@ -96,7 +102,8 @@ LENDULET_FORCE_INLINE Wide<float, W> bias_of(const JointRow<W, C>& c, const Join
 // Velocities that the locked rows still have to lose.
 template <int W, JointClass C, bool biased>
 LENDULET_FORCE_INLINE void locked_speeds(const JointRow<W, C>& c, const JointGeometry<W, C>& o,
-                                         const JointPair<Wide<float, W>>& p, const JointConstants& k, bool split,
+                                         const JointPair<Wide<float, W>>& p, const JointPair<Wide<float, W>>& before,
+                                         const JointConstants& k, bool split,
                                          Wide<float, W> (&change)[JointShape<C>::locked]) {
     using F = Wide<float, W>;
     using S = JointShape<C>;
@@ -108,8 +115,10 @@ LENDULET_FORCE_INLINE void locked_speeds(const JointRow<W, C>& c, const JointGeo
     };
     Vec3T<F> sliding = p.sliding(o.ra, o.rb), turning = p.turning();
     if constexpr (biased) {
-        sliding = sliding + ahead(sliding_curvature(p, o.ra, o.rb, S::along ? sliding : zero_vector<F>()));
-        if constexpr (S::angular > 0) turning = turning + ahead(turning_curvature(p));
+        Vec3T<F> along = zero_vector<F>();
+        if constexpr (S::along) along = before.sliding(o.ra, o.rb);
+        sliding = sliding + ahead(sliding_curvature(before, o.ra, o.rb, along));
+        if constexpr (S::angular > 0) turning = turning + ahead(turning_curvature(before));
     }
     for (int i = 0; i < S::linear; ++i) {
         change[i] = zero - along_row<W, C>(o, i, sliding);
@@ -130,13 +139,14 @@ LENDULET_FORCE_INLINE void locked_speeds(const JointRow<W, C>& c, const JointGeo
 template <int W, JointClass C, bool biased>
 LENDULET_FORCE_INLINE void solve_locked(JointRow<W, C>& c, const JointGeometry<W, C>& o,
                                         const Factor<Wide<float, W>, JointShape<C>::locked>& mass,
-                                        const JointPair<Wide<float, W>>& p, const JointConstants& k, bool split,
-                                        Wide<float, W> (&change)[JointShape<C>::locked]) {
-    locked_speeds<W, C, biased>(c, o, p, k, split, change);
+                                        const JointPair<Wide<float, W>>& p, const JointPair<Wide<float, W>>& before,
+                                        const Wide<float, W> (&turned)[JointShape<C>::locked], const JointConstants& k,
+                                        bool split, Wide<float, W> (&change)[JointShape<C>::locked]) {
+    locked_speeds<W, C, biased>(c, o, p, before, k, split, change);
     mass.solve(change);
     for (int i = 0; i < JointShape<C>::locked; ++i) {
         change[i] = c.relaxation * change[i];
-        if constexpr (biased) change[i] = change[i] - c.leak * c.impulse[i];
+        if constexpr (biased) change[i] = change[i] - c.leak * (c.impulse[i] + turned[i]);
         c.impulse[i] = c.impulse[i] + change[i];
     }
 }
@@ -296,6 +306,17 @@ LENDULET_FORCE_INLINE void scale_impulses(JointRow<W, C>& c, Wide<float, W> s) {
     if constexpr (S::rubs) c.rub = s * c.rub;
 }
 
+// What a pass did to the impulses, told to the row.
+template <int W, JointClass C>
+LENDULET_FORCE_INLINE void hold(JointRow<W, C>& c, const JointGeometry<W, C>& o, Vec3T<Wide<float, W>> linear,
+                                Vec3T<Wide<float, W>> angular) {
+    using S = JointShape<C>;
+    c.turn_a = c.turn_a + (cross(o.ra, linear) + angular);
+    c.turn_b = c.turn_b + (cross(o.rb, linear) + angular);
+    if constexpr (S::directions > 0) c.angular = c.angular + angular;
+    if constexpr (S::along) c.linear = c.linear + linear;
+}
+
 // Replaces the impulses that the bodies' velocities hold by those on the present arms and axes.
 template <int W, JointClass C>
 LENDULET_FORCE_INLINE void rebase(JointRow<W, C>& c, const JointGeometry<W, C>& o, JointPair<Wide<float, W>>& p) {
@@ -319,6 +340,24 @@ LENDULET_FORCE_INLINE void rebase(JointRow<W, C>& c, const JointGeometry<W, C>& 
     p.B.w = p.B.w + p.IB * (turn_b - c.turn_b);
     c.turn_a = turn_a;
     c.turn_b = turn_b;
+}
+
+// By how much the impulses of the locked rows turned with their arms: what makes these rows move as before rebase().
+template <int W, JointClass C>
+LENDULET_FORCE_INLINE void turn_held(const JointRow<W, C>& c, const JointGeometry<W, C>& o,
+                                     const Factor<Wide<float, W>, JointShape<C>::locked>& mass,
+                                     const JointPair<Wide<float, W>>& before, const JointPair<Wide<float, W>>& after,
+                                     Wide<float, W> (&turned)[JointShape<C>::locked]) {
+    using F = Wide<float, W>;
+    using S = JointShape<C>;
+    const Vec3T<F> wa = before.A.w - after.A.w, wb = before.B.w - after.B.w;
+    Vec3T<F> sliding = cross(wb, o.rb) - cross(wa, o.ra), turning = wb - wa;
+    if constexpr (S::along) sliding = sliding + ((before.B.v - after.B.v) - (before.A.v - after.A.v));
+    for (int i = 0; i < S::linear; ++i) turned[i] = along_row<W, C>(o, i, sliding);
+    if constexpr (S::angular > 0)
+        for (int j = 0; j < S::angular; ++j) turned[S::linear + j] = dot(o.direction[S::turning + j], turning);
+    mass.solve(turned);
+    for (int i = 0; i < S::locked; ++i) turned[i] = c.relaxation * turned[i];
 }
 
 // What a joint holds: along the line or at the point, and about each body's centre of mass.
@@ -349,7 +388,7 @@ template <int W>
 // All rows of a joint let go of the same share. Few ever come so far: a bound of the spins, by the traces of the
 // inverse inertias, tells.
 template <int W, JointClass C>
-LENDULET_FORCE_INLINE void limit_held(JointRow<W, C>& c, JointPair<Wide<float, W>>& p) {
+LENDULET_FORCE_INLINE Wide<float, W> limit_held(JointRow<W, C>& c, JointPair<Wide<float, W>>& p) {
     using F = Wide<float, W>;
     constexpr float per_speed = 1.0f / most_held_speed, per_spin = 1.0f / most_held_spin;
     HeldByJoint<F> held{{}, c.turn_a, c.turn_b};
@@ -360,8 +399,10 @@ LENDULET_FORCE_INLINE void limit_held(JointRow<W, C>& c, JointPair<Wide<float, W
     const F most_a = splat<F>(per_spin) * (p.IA.xx + p.IA.yy + p.IA.zz),
             most_b = splat<F>(per_spin) * (p.IB.xx + p.IB.yy + p.IB.zz);
     const F most2 = maximum((most_a * most_a) * dot(c.turn_a, c.turn_a), (most_b * most_b) * dot(c.turn_b, c.turn_b));
-    if (mask_bits(maximum(speed2, most2) > splat<F>(1.0f)) == 0) return;
-    scale_impulses<W, C>(c, let_go_of_excess<W>(p, held, speed2, c.leak));
+    if (mask_bits(maximum(speed2, most2) > splat<F>(1.0f)) == 0) return splat<F>(1.0f);
+    const F share = let_go_of_excess<W>(p, held, speed2, c.leak);
+    scale_impulses<W, C>(c, share);
+    return share;
 }
 
 template <int W, JointClass C>
@@ -393,13 +434,19 @@ LENDULET_FORCE_INLINE void joint_pass(JointRow<W, C>& c, const JointGroup& g, So
     PointResponse<F> response = point_response(o.ra, o.rb, pair.IA, pair.IB, pair.A.inverse_mass + pair.B.inverse_mass);
     Factor<F, S::locked> mass = factor_locked<W, C>(c, o, response);
     if (g.split && k.scale != 1.0f) scale_impulses<W, C>(c, splat<F>(k.scale));
+    const JointPair<F> before = pair;
     if (biased || g.split) rebase<W, C>(c, o, pair);
-    if constexpr (biased) limit_held<W, C>(c, pair);
+    F turned[S::locked];
+    if constexpr (biased) {
+        turn_held<W, C>(c, o, mass, before, pair, turned);
+        const F share = limit_held<W, C>(c, pair);
+        for (F& t : turned) t = share * t;
+    }
     JointChange<W, C> x;
     if constexpr (S::bounded > 0)
         for (F& b : x.bounded) b = splat<F>(0.0f);
     if constexpr (S::rubs) x.rub = zero_vector<F>();
-    solve_locked<W, C, biased>(c, o, mass, pair, k, g.split, x.locked);
+    solve_locked<W, C, biased>(c, o, mass, pair, before, turned, k, g.split, x.locked);
     Vec3T<F> linear, angular;
     to_vectors<W, C>(o, x, linear, angular);
     pair.push(o.ra, o.rb, linear, angular);
@@ -409,10 +456,7 @@ LENDULET_FORCE_INLINE void joint_pass(JointRow<W, C>& c, const JointGroup& g, So
         else solve_bounded<W, C, biased>(c, o, response, mass, pair, k, g.split, x);
         to_vectors<W, C>(o, x, linear, angular);
     }
-    c.turn_a = c.turn_a + (cross(o.ra, linear) + angular);
-    c.turn_b = c.turn_b + (cross(o.rb, linear) + angular);
-    if constexpr (S::directions > 0) c.angular = c.angular + angular;
-    if constexpr (S::along) c.linear = c.linear + linear;
+    hold<W, C>(c, o, linear, angular);
     if (!biased || g.split) add_to_sums<W, C>(c);  // what the row holds now has acted
     if (g.moved_a) store_velocity_at<W>(bodies.state.data(), c.a, pair.A);
     if (g.moved_b) store_velocity_at<W>(bodies.state.data(), c.b, pair.B);
