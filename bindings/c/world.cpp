@@ -111,4 +111,8 @@ lendulet_result lendulet_restore(lendulet_world* world, const uint8_t* bytes, si
     return result_of(status);
 }
 
+void lendulet_forget_removed(lendulet_world* world) {
+    if (world) world->scene.world.forget_removed();
+}
+
 }  // extern "C"

@@ -449,8 +449,11 @@ lendulet_result lendulet_read_grab(const lendulet_world* world, float out[3]);
 
 /* Returns the number of bytes. */
 lendulet_result lendulet_read_snapshot(lendulet_world* world, const uint8_t** out);
-/* Goes back. Bodies added since are removed again; lets go of what is grabbed. */
+/* Goes back. Bodies and joints added since are removed again, those removed since have their numbers again, as long as
+ * the world remembers them: the last 4096 of either. Lets go of what is grabbed. */
 lendulet_result lendulet_restore(lendulet_world* world, const uint8_t* bytes, size_t size);
+/* Forgets what was removed, with its hulls and meshes: snapshots that have it are refused. */
+void lendulet_forget_removed(lendulet_world* world);
 
 #ifdef __cplusplus
 }

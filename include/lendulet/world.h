@@ -58,6 +58,9 @@ struct WorldConfig {
     bool allow_sleep = true;
     bool continuous = true;  // fast bodies are stopped where they would pass through static and kinematic ones
     float hit_speed = 1.0f;  // slower meetings are no hits (ContactHit), m/s, >= 0; no result depends on it
+    // So many of the bodies, and as many of the joints, that were removed last are remembered, so that snapshots of
+    // before can bring them back; 0 .. 16 777 216. Each is about 1 kB, beside the hulls and meshes that it holds on to.
+    int kept_removed = 4096;
     AllocatorHook allocator{};
     TaskHook tasks{};
 };
@@ -144,7 +147,8 @@ public:
     // shape_not_dynamic, out_of_world. On an error nothing has changed.
     Result<BodyId> add_rigid_body(const RigidBodyDef& def);
     Result<BodyId> add_static_body(const StaticBodyDef& def);
-    // Removes the body with its colliders and joints. Errors: stale_id, wrong_world.
+    // Removes the body with its colliders and joints. A snapshot of before brings them back, as long as they are among
+    // those remembered (WorldConfig::kept_removed). Errors: stale_id, wrong_world.
     Status remove_body(BodyId id);
     // Puts any body somewhere, static ones too: as RigidBodyRef::set_pose() for one that moves. Quaternions within 1e-3
     // of unit length are normalised. What touches the body, what it comes to lie in and what is joined to it wakes; its
@@ -228,10 +232,15 @@ public:
     std::vector<uint8_t> snapshot() const;
     // Goes back to a snapshot of this world, or of one that was built alike (bodies, joints, settings that results
     // depend on; another number of workers, width or broad phase will do): from there on it computes the same bits.
-    // Bodies and joints added since are removed again. Statistics stay those of the last step. O(n).
-    // Errors: bad_snapshot (truncated, altered, another version), wrong_world (of a world with other bodies, or one of
-    // its bodies or joints was removed since), locked. On an error nothing has changed.
+    // Bodies and joints added since are removed again; those removed since are alive again, under the ids that they
+    // had, as far as this world remembers them (WorldConfig::kept_removed). Names and user data of those come as they
+    // were when removed. Statistics stay those of the last step. O(n).
+    // Errors: bad_snapshot (truncated, altered, another version), wrong_world (of a world with other bodies, or a body
+    // or joint of it was removed too long ago), locked. On an error nothing has changed.
     Status restore(std::span<const uint8_t> snapshot);
+    // Forgets what was removed and lets go of its memory and its share in hulls and meshes: restore() refuses snapshots
+    // with bodies and joints that are not alive now.
+    void forget_removed();
     // A second world in the same state, which goes its own way: left alone, the two compute the same bits. Handles of
     // this world name the same bodies, colliders and joints there, and hulls and meshes are shared. Hooks for memory
     // and tasks are the same. query_boxes(), nearest_box() and for_each_aabb() find nothing there before its first
@@ -366,6 +375,7 @@ public:
     WorldBuilder& sleep(bool allow) { return config_.allow_sleep = allow, *this; }
     WorldBuilder& continuous(bool on) { return config_.continuous = on, *this; }
     WorldBuilder& hit_speed(float v) { return config_.hit_speed = v, *this; }
+    WorldBuilder& kept_removed(int count) { return config_.kept_removed = count, *this; }
     WorldBuilder& allocator(AllocatorHook hook) { return config_.allocator = hook, *this; }
     WorldBuilder& tasks(TaskHook hook) { return config_.tasks = hook, *this; }
     const WorldConfig& config() const { return config_; }

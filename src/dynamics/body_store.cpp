@@ -22,10 +22,8 @@ uint32_t BodyStore::add() {
     principal.resize(n);
     if (name.size() < n) name.resize(n);
     pose[slot] = {};
-    momenta[slot] = {};
+    clear_motion(slot);
     mass[slot] = {};
-    forces[slot] = {};
-    change[slot] = {};
     info[slot] = {};
     principal[slot] = {};
     name[slot].clear();

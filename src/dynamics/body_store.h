@@ -94,6 +94,8 @@ struct BodyStore {
           principal(memory) {}
 
     uint32_t add();
+    // At rest, without forces.
+    void clear_motion(uint32_t slot) { momenta[slot] = {}, forces[slot] = {}, change[slot] = {}; }
     // Becomes a copy of another world's bodies, with their handles.
     void copy(const BodyStore& o);
     BodyId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }

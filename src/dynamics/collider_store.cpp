@@ -74,6 +74,12 @@ void ColliderStore::copy(const ColliderStore& o) {
     table = o.table;
 }
 
+void ColliderStore::let_go(uint32_t slot) {
+    shape[slot] = Sphere{};
+    materials[slot].clear();
+    table[slot].clear();
+}
+
 uint32_t ColliderStore::add() {
     uint32_t slot = slots.add();
     size_t n = slots.capacity();

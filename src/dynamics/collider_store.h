@@ -71,6 +71,8 @@ struct ColliderStore {
         : slots(memory, world), geometry(memory), local(memory), surface(memory), info(memory) {}
 
     uint32_t add();
+    // Lets go of shared hulls, meshes and height fields of a collider that is removed.
+    void let_go(uint32_t slot);
     // The surface of a collider at one of its triangles (number in the user's list), or at none: -1.
     const Surface& surface_at(uint32_t slot, int32_t triangle) const;
     // Becomes a copy of another world's colliders, with their handles; hulls and meshes are shared.

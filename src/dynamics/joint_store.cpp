@@ -10,6 +10,13 @@ uint32_t JointStore::add(const JointInfo& joint, const JointAxesInfo* rows, std:
     record.resize(n, -1);
     next_.resize(2 * n, no_joint_link);
     if (name.size() < n) name.resize(n);
+    put(slot, joint, rows, joint_name);
+    hang(joint.body_a, 2 * slot);
+    hang(joint.body_b, 2 * slot + 1);
+    return slot;
+}
+
+void JointStore::put(uint32_t slot, const JointInfo& joint, const JointAxesInfo* rows, std::string_view joint_name) {
     info[slot] = joint;
     info[slot].axes = -1;
     if (rows) {
@@ -22,9 +29,14 @@ uint32_t JointStore::add(const JointInfo& joint, const JointAxesInfo* rows, std:
     impulses[slot] = {};
     record[slot] = -1;
     name[slot] = std::string(joint_name);
-    hang(joint.body_a, 2 * slot);
-    hang(joint.body_b, 2 * slot + 1);
-    return slot;
+}
+
+void JointStore::hang_all() {
+    for (uint32_t& link : first_) link = no_joint_link;
+    for (uint32_t slot : slots.order()) {
+        hang(info[slot].body_a, 2 * slot);
+        hang(info[slot].body_b, 2 * slot + 1);
+    }
 }
 
 void JointStore::remove(uint32_t slot) {

@@ -82,6 +82,10 @@ struct JointStore {
     // A new joint; hangs it on both bodies. `rows` of joints that have such, else null.
     uint32_t add(const JointInfo& joint, const JointAxesInfo* rows, std::string_view name);
     void remove(uint32_t slot);
+    // One that was removed is about to be alive again, then its bodies are told by hang_all().
+    void put(uint32_t slot, const JointInfo& joint, const JointAxesInfo* rows, std::string_view name);
+    // Makes the lists of the bodies anew.
+    void hang_all();
     // Becomes a copy of another world's joints, with their handles; none of them is being solved.
     void copy(const JointStore& o);
     JointId id(uint32_t slot) const { return {slot, slots.generation(slot)}; }

@@ -16,12 +16,19 @@ void copy_array(const Array<T>& from, Array<T>& to) {
     to.append(from.data(), from.size());
 }
 
+// Names an object of one kind for good: its slot, and how many had given that back before.
+struct SlotUse {
+    uint32_t slot = ~0u, uses = 0;
+    friend bool operator==(const SlotUse&, const SlotUse&) = default;
+};
+
 class Slots {
 public:
     // `world`: 1 to 255.
     Slots(const Memory* memory, uint32_t world)
         : first_generation_(world << world_shift),
           generation_(memory),
+          latest_(memory),
           free_(memory),
           alive_(memory),
           order_(memory),
@@ -33,6 +40,7 @@ public:
         if (free_.empty()) {
             slot = static_cast<uint32_t>(generation_.size());
             generation_.push_back(first_generation_);
+            latest_.push_back(0u);
             place_.push_back(0u);
             alive_.push_back(0u);
         } else {
@@ -52,7 +60,7 @@ public:
         order_[at] = hole;
         if (at < first_hole_) first_hole_ = at;
         holes_.store(holes_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-        generation_[slot] = first_generation_ | ((generation_[slot] + 1) & count_mask);
+        generation_[slot] = generation_after(++latest_[slot]);
         free_.push_back(slot);
         alive_[slot] = 0;
         --count_;
@@ -69,6 +77,11 @@ public:
     int count() const { return count_; }
     // Rises with the time of creation; valid until something is added or the order is read. For writing calls.
     uint32_t place(uint32_t slot) const { return place_[slot]; }
+    // The first of them, where there are any.
+    uint32_t oldest() {
+        while (order_[first_] == hole) ++first_;
+        return order_[first_];
+    }
     // Slots by creation. After removals the first call moves the younger ones down; several threads may call at once.
     const Array<uint32_t>& order() const {
         if (holes_.load(std::memory_order_acquire) > 0) close_holes();
@@ -77,6 +90,11 @@ public:
     uint32_t in_order(int index) const { return order()[static_cast<size_t>(index)]; }
     // How often the slot was given back: its generation without the number of the world.
     uint32_t uses(uint32_t slot) const { return generation_[slot] & count_mask; }
+    SlotUse use(uint32_t slot) const { return {slot, uses(slot)}; }
+    // Whether that object is alive.
+    bool holds(SlotUse use) const {
+        return use.slot < generation_.size() && alive_[use.slot] && uses(use.slot) == use.uses;
+    }
 
     // The generation of a slot that was given back so often.
     uint32_t generation_after(uint32_t uses) const { return first_generation_ | (uses & count_mask); }
@@ -84,13 +102,24 @@ public:
 
     // Which slots are handed out next, the last of them first. For snapshots.
     const Array<uint32_t>& free_list() const { return free_; }
-    // Brings the list back to what it was when there were `capacity` slots: new objects then get the slots that they
-    // would have got at that time. Slots made since come in their order after those of the list.
-    void set_free_list(const Array<uint32_t>& list, size_t capacity) {
+    // The free slot is that of an object again which had been removed, and is about to be among those alive. When this
+    // one goes, the next gets a generation that none had before.
+    void give_back(SlotUse use) { generation_[use.slot] = generation_after(use.uses); }
+    // Makes these alive, in this order, others having been removed before, and brings the list of free ones back to
+    // what it was when there were `capacity` slots: new objects then get the slots that they would have got at that
+    // time. Slots made since come in their order after those of the list.
+    void set_alive(const Array<uint32_t>& order, const Array<uint32_t>& free_list, size_t capacity) {
+        copy_array(order, order_);
+        alive_.assign(generation_.size(), 0);
+        for (size_t i = 0; i < order.size(); ++i) alive_[order[i]] = 1, place_[order[i]] = static_cast<uint32_t>(i);
+        count_ = order.count();
+        first_ = 0;
+        first_hole_ = hole;
+        holes_.store(0, std::memory_order_relaxed);
         free_.clear();
         for (size_t slot = generation_.size(); slot > capacity; --slot)
             free_.push_back(static_cast<uint32_t>(slot - 1));
-        free_.append(list.data(), list.size());
+        free_.append(free_list.data(), free_list.size());
     }
 
     // Becomes a copy of another world's slots, which knows its handles.
@@ -99,9 +128,11 @@ public:
         count_ = o.count_;
         copy_array(o.order(), order_);
         copy_array(o.generation_, generation_);
+        copy_array(o.latest_, latest_);
         copy_array(o.free_, free_);
         copy_array(o.alive_, alive_);
         copy_array(o.place_, place_);
+        first_ = 0;
         first_hole_ = hole;
         holes_.store(0, std::memory_order_relaxed);
     }
@@ -118,6 +149,7 @@ private:
                 order_[kept++] = order_[i];
             }
             order_.resize_unset(kept);
+            first_ = 0;
             first_hole_ = hole;
             holes_.store(0, std::memory_order_release);
         }
@@ -128,11 +160,14 @@ private:
     static constexpr uint32_t count_mask = (1u << world_shift) - 1;
     uint32_t first_generation_;
     int count_ = 0;
-    Array<uint32_t> generation_, free_;
+    Array<uint32_t> generation_;
+    Array<uint32_t> latest_;  // uses of the slot; more than its generation tells where an object came back
+    Array<uint32_t> free_;
     Array<uint8_t> alive_;
     // What the next reader of the order may have to close holes in.
     mutable Array<uint32_t> order_, place_;  // place_: in order_, or hole
     mutable uint32_t first_hole_ = hole;
+    mutable uint32_t first_ = 0;  // before it are only holes
     mutable std::atomic<int> holes_{0};
     mutable std::atomic<bool> busy_{false};
 };

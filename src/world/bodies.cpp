@@ -305,14 +305,13 @@ Status World::remove_body(BodyId id) {
     wake_touching(world, slot);  // what rested on it falls
     remove_joints_of(world, slot);
     remove_mover(world, slot);
+    keep_removed_body(world, slot);
     for (uint32_t c = world.bodies.info[slot].first_collider; c != no_slot;) {
         uint32_t next = world.colliders.info[c].next;
         world.pairs.for_each_of(c, [&](uint32_t number) { forget_pair(world, number); });
         set_asks(world, c, Events::none);
         remove_box(world, c);
-        world.colliders.shape[c] = Sphere{};  // lets go of shared hulls, meshes and height fields
-        world.colliders.materials[c].clear();
-        world.colliders.table[c].clear();
+        world.colliders.let_go(c);
         world.colliders.info[c].body = no_slot;
         world.colliders.info[c].boxed = false;
         world.query_scene.changed(c);

@@ -12,6 +12,7 @@ namespace {
 
 TaskPool::Hook task_hook(const WorldConfig& c) { return {c.tasks.user, c.tasks.workers, c.tasks.parallel_for}; }
 
+constexpr int most_kept_removed = 1 << 24;
 constexpr float max_gravity = 1e9f;  // m/s^2; its square is still far from overflow
 
 // Worlds are numbered in turn, 1 to 255, for their handles alone: no result depends on it.
@@ -52,6 +53,9 @@ Status check_config(const WorldConfig& c) {
     if (c.width != 0 && c.width != 1 && c.width != 4 && c.width != 8 && c.width != 16)
         return bad_config("width is " + std::to_string(c.width) + ", must be 1, 4, 8 or 16");
     if (Status s = check_hit_speed(c.hit_speed, "build"); !s) return s;
+    if (c.kept_removed < 0 || c.kept_removed > most_kept_removed)
+        return bad_config("kept_removed is " + std::to_string(c.kept_removed) + ", must be 0 to " +
+                          std::to_string(most_kept_removed));
     if (c.broad_phase > BroadPhaseType::wide_tree) return bad_config("that broad phase is none");
     if (c.simplex > SimplexSolver::half_space) return bad_config("that simplex solver is none");
     if (c.integrator > Integrator::runge_kutta_4) return bad_config("that integrator is none");
@@ -69,6 +73,7 @@ WorldData::WorldData(const WorldConfig& settings, uint32_t number)
       bodies(&memory, number),
       colliders(&memory, number),
       joints(&memory, number),
+      removed(&memory),
       broad_phase(settings.broad_phase, &memory),
       moving_boxes(&memory),
       fixed_boxes(&memory),

@@ -25,6 +25,7 @@
 #include "world/pairs.h"
 #include "world/queries/scene.h"
 #include "world/seams.h"
+#include "world/snapshot/removed.h"
 
 namespace lendulet {
 
@@ -144,6 +145,7 @@ struct WorldData {
     BodyStore bodies;
     ColliderStore colliders;
     JointStore joints;
+    Removed removed;
 
     // Bounds of colliders, by whether their bodies are static, with the collider's slot as index. Boxes of bodies that
     // rest stay as they are.

@@ -173,6 +173,7 @@ const char* test_snapshots(void) {
     static uint8_t kept[1 << 20];
     const uint8_t* bytes;
     const lendulet_body* bodies;
+    lendulet_body gone;
     uint64_t there, later;
     int size;
     const float up[3] = {0.0f, 9.0f, 0.0f};
@@ -188,8 +189,17 @@ const char* test_snapshots(void) {
     EXPECT(lendulet_restore(world, kept, (size_t)size) == 0);
     EXPECT(lendulet_hash(world) == there && lendulet_step_count(world) == 20);
     EXPECT(run(world, 30) && lendulet_hash(world) == later);
+    EXPECT(lendulet_read_bodies(world, &bodies) > 5);
+    gone = bodies[3];
+    EXPECT(lendulet_remove_body(world, gone) == 0 && run(world, 5) && lendulet_remove_body(world, gone) < 0);
+    EXPECT(lendulet_restore(world, kept, (size_t)size) == 0 && lendulet_hash(world) == there);
+    EXPECT(lendulet_read_bodies(world, &bodies) > 5 && bodies[3] == gone);
+    EXPECT(run(world, 30) && lendulet_hash(world) == later);
     EXPECT(lendulet_restore(world, kept, (size_t)size - 1) < 0 && strstr(lendulet_error(), "bytes") != NULL);
     EXPECT(lendulet_hash(world) == later && lendulet_read_bodies(world, &bodies) > 5);
+    EXPECT(lendulet_remove_body(world, gone) == 0);
+    lendulet_forget_removed(world);
+    EXPECT(lendulet_restore(world, kept, (size_t)size) < 0 && strstr(lendulet_error(), "1 bodies") != NULL);
     lendulet_destroy(world);
     return NULL;
 }

@@ -57,6 +57,7 @@ void remove_joint_at(WorldData& world, uint32_t slot) {
     wake_body(world, j.body_b);
     drop_joint_records(world);
     joints_changed(world, j);
+    keep_removed_joint(world, slot);
     world.joints.remove(slot);
 }
 

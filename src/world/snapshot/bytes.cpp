@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr char magic[8] = {'L', 'E', 'N', 'D', 'S', 'N', 'A', 'P'};
-constexpr uint32_t version = 9;
+constexpr uint32_t version = 10;
 constexpr size_t header_bytes = sizeof magic + 2 * sizeof(uint32_t), checksum_bytes = sizeof(uint64_t);
 
 uint64_t checksum(std::span<const uint8_t> bytes) {
@@ -106,15 +106,35 @@ void slots(Bytes& bytes, SavedSlots& s) {
     bytes.list(s.free_list, [](Bytes& b, uint32_t& slot) { b(slot); });
 }
 
+// Most objects stand in the slot after that of the one before, used as often.
+template <class Saved>
+void note_followers(Array<Saved>& list) {
+    SlotUse next{0, 0};
+    for (Saved& s : list) {
+        s.follows = s.id == next;
+        next = {s.id.slot + 1, s.id.uses};
+    }
+}
+template <class Saved>
+void number_followers(Array<Saved>& list) {
+    SlotUse next{0, 0};
+    for (Saved& s : list) {
+        if (s.follows) s.id = next;
+        next = {s.id.slot + 1, s.id.uses};
+    }
+}
+
 template <class Bytes>
 void body(Bytes& bytes, SavedBody& b) {
     flags(bytes, b.asleep, b.has_forces, b.placed, b.capped, b.contained, b.stopped, b.loaded, b.fixed);
     if (b.fixed) {
-        flags(bytes, b.altered);
+        flags(bytes, b.altered, b.follows);
+        if (!b.follows) bytes(b.id);
         if (b.altered) bytes(b.pose);
         return;
     }
-    flags(bytes, b.mover, b.woken, b.bullet, b.allow_sleep, b.drags_alike, b.kinematic, b.altered);
+    flags(bytes, b.mover, b.woken, b.bullet, b.allow_sleep, b.drags_alike, b.kinematic, b.altered, b.follows);
+    if (!b.follows) bytes(b.id);
     if (b.altered) bytes(b.mass.mass, b.mass.inverse_mass, b.mass.inertia, b.mass.inverse_inertia, b.mass.anisotropy);
     if (!b.drags_alike) bytes(b.linear_damping, b.angular_damping, b.gravity_factor);
     bytes(b.pose, b.still_time);
@@ -155,7 +175,8 @@ void joint(Bytes& bytes, SavedJoint& j) {
     bytes(j.limit, j.twist_limit, j.swing_limit, j.friction);
     bytes(i.linear, i.angular, i.limit, i.motor, i.spring, i.flags);
     bytes(i.impulse, i.angular_impulse, i.h);
-    flags(bytes, j.has_axes);
+    flags(bytes, j.has_axes, j.follows);
+    if (!j.follows) bytes(j.id);
     if (!j.has_axes) return;
     for (JointAxis& axis : j.axes.row) drive(bytes, axis.motor, axis.spring), bytes(axis.limit, axis.friction);
     bytes(j.axes.limit, j.axes.motor, j.axes.spring);
@@ -242,6 +263,7 @@ Error bad(std::string what) { return {ErrorCode::bad_snapshot, "restore: " + std
 std::vector<uint8_t> encode(SavedState& saved) {
     Writer writer;
     writer.bytes.reserve(1024 + 160 * saved.bodies.size() + 80 * saved.pairs.size() + 200 * saved.contacts.size());
+    note_followers(saved.bodies), note_followers(saved.joints);
     uint32_t number = version, size = 0;
     writer(magic, number, size);
     state(writer, saved);
@@ -271,6 +293,7 @@ Status decode(std::span<const uint8_t> bytes, SavedState& saved) {
     Reader reader(content.subspan(header_bytes));
     state(reader, saved);
     if (!reader.good() || !reader.at_end()) return bad("the snapshot's lists do not fit its size");
+    number_followers(saved.bodies), number_followers(saved.joints);
     return {};
 }
 

@@ -31,11 +31,12 @@ uint64_t mix_surface(uint64_t h, const Surface& s) {
     return hash_floats(h, values, 9);
 }
 
-uint64_t mix_body(uint64_t h, const WorldData& world, uint32_t slot) {
+}  // namespace
+
+uint64_t hash_body(const WorldData& world, uint32_t slot) {
     const BodyInfo& info = world.bodies.info[slot];
     const BodyMass& mass = world.bodies.mass_as_added(slot);
-    h = hash_combine(h, slot);
-    h = hash_combine(h, world.bodies.slots.uses(slot));
+    uint64_t h = hash_combine(slot, world.bodies.slots.uses(slot));
     h = hash_combine(h, static_cast<uint64_t>(info.type == BodyType::fixed));
     h = hash_combine(h, static_cast<uint64_t>(info.massless));
     h = mix(hash_floats(h, &mass.mass, 1), mass.inertia);
@@ -54,10 +55,10 @@ uint64_t mix_body(uint64_t h, const WorldData& world, uint32_t slot) {
     return h;
 }
 
-uint64_t mix_joint(uint64_t h, const WorldData& world, uint32_t slot) {
+uint64_t hash_joint(const WorldData& world, uint32_t slot) {
     const JointInfo& joint = world.joints.info[slot];
-    for (uint64_t word : {uint64_t{slot}, uint64_t{world.joints.slots.uses(slot)}, static_cast<uint64_t>(joint.type),
-                          uint64_t{joint.body_a}, uint64_t{joint.body_b}})
+    uint64_t h = hash_combine(slot, world.joints.slots.uses(slot));
+    for (uint64_t word : {static_cast<uint64_t>(joint.type), uint64_t{joint.body_a}, uint64_t{joint.body_b}})
         h = hash_combine(h, word);
     h = hash_combine(h, static_cast<uint64_t>(joint.axes >= 0));
     const float breaks[2] = {joint.break_force, joint.break_torque};
@@ -65,16 +66,24 @@ uint64_t mix_joint(uint64_t h, const WorldData& world, uint32_t slot) {
     return mix(mix(h, joint.frame_a), joint.frame_b);
 }
 
+namespace {
+
 void capture_slots(const Slots& slots, SavedSlots& saved) {
     saved.count = static_cast<uint32_t>(slots.count());
     saved.capacity = static_cast<uint32_t>(slots.capacity());
-    saved.free_list.append(slots.free_list().data(), slots.free_list().size());
+    // Free ones that come last, in their order, might as well not have been made yet: states that are equal but for the
+    // past give equal bytes.
+    const Array<uint32_t>& free = slots.free_list();
+    size_t first = 0;
+    while (first < free.size() && free[first] + 1 == saved.capacity) ++first, --saved.capacity;
+    saved.free_list.append(free.data() + first, free.size() - first);
 }
 
 // `before`: what was captured of the last body.
 SavedBody capture_body(const WorldData& world, uint32_t slot, const SavedBody& before) {
     const BodyInfo& info = world.bodies.info[slot];
     SavedBody b;
+    b.id = world.bodies.slots.use(slot);
     b.kinematic = info.type == BodyType::kinematic;
     b.bullet = info.bullet, b.allow_sleep = info.allow_sleep;
     b.linear_damping = info.linear_damping, b.angular_damping = info.angular_damping;
@@ -162,10 +171,18 @@ constexpr auto without_world = [](auto& id) { id.generation = Slots::uses_of(id.
 
 }  // namespace
 
-uint64_t fingerprint(const WorldData& world, uint32_t bodies, uint32_t joints) {
+uint64_t fingerprint(const WorldData& world, const SavedState& state, const Returning& returning) {
     uint64_t h = mix_settings(0, world.config);
-    for (uint32_t i = 0; i < bodies; ++i) h = mix_body(h, world, world.bodies.slots.in_order(static_cast<int>(i)));
-    for (uint32_t i = 0; i < joints; ++i) h = mix_joint(h, world, world.joints.slots.in_order(static_cast<int>(i)));
+    for (size_t i = 0; i < state.bodies.size(); ++i) {
+        const uint32_t gone = returning.body(i);
+        h = hash_combine(
+            h, gone != no_slot ? world.removed.of_body[gone].hash : hash_body(world, state.bodies[i].id.slot));
+    }
+    for (size_t i = 0; i < state.joints.size(); ++i) {
+        const uint32_t gone = returning.joint(i);
+        h = hash_combine(
+            h, gone != no_slot ? world.removed.of_joint[gone].hash : hash_joint(world, state.joints[i].id.slot));
+    }
     return h;
 }
 
@@ -173,7 +190,6 @@ void capture(const WorldData& world, SavedState& state) {
     capture_slots(world.bodies.slots, state.body_slots);
     capture_slots(world.colliders.slots, state.collider_slots);
     capture_slots(world.joints.slots, state.joint_slots);
-    state.fingerprint = fingerprint(world, state.body_slots.count, state.joint_slots.count);
     state.gravity = world.config.gravity;
     state.last_h = world.last_h;
     state.time = world.time;
@@ -188,10 +204,11 @@ void capture(const WorldData& world, SavedState& state) {
     for (uint32_t slot : world.joints.slots.order()) {
         const JointInfo& j = world.joints.info[slot];
         const bool has_axes = j.axes >= 0;
-        state.joints.push_back({j.limit, j.twist_limit, j.swing_limit, j.motor, j.spring, j.friction,
-                                joint_impulses(world, slot), has_axes,
+        state.joints.push_back({world.joints.slots.use(slot), false, j.limit, j.twist_limit, j.swing_limit, j.motor,
+                                j.spring, j.friction, joint_impulses(world, slot), has_axes,
                                 has_axes ? joint_axes_impulses(world, slot) : JointAxesInfo{}});
     }
+    state.fingerprint = fingerprint(world, state, {});
     state.boxes.append(world.moving_boxes.data(), world.moving_boxes.size());
     capture_pairs(world, state);
     for (EndedTouch e : world.events.ended) {

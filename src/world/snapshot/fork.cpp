@@ -28,6 +28,8 @@ Result<World> World::fork(const WorldConfig& settings) const {
     to.bodies.copy(from.bodies);
     to.colliders.copy(from.colliders);
     to.joints.copy(from.joints);
+    to.removed.copy(from.removed);
+    forget_oldest(to);
     to.has_extras = from.has_extras;
     for (uint32_t c : to.colliders.slots.order()) set_asks(to, c, to.colliders.info[c].events);
     fill_defaults(to, from.config);

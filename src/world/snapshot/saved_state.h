@@ -18,6 +18,8 @@ struct SavedSlots {
 };
 
 struct SavedBody {
+    SlotUse id;
+    bool follows = false;  // in the slot after that of the one before, used as often
     Pose pose;
     BodyMomenta momenta{};
     BodyChange change{};
@@ -47,6 +49,8 @@ struct SavedCollider {
 };
 
 struct SavedJoint {
+    SlotUse id;
+    bool follows = false;  // as with bodies
     Limit limit{}, twist_limit{};
     float swing_limit = 0.0f;
     Motor motor;
@@ -107,13 +111,21 @@ void for_each_handle(Event& event, Visit&& visit) {
     visit(event.collider_a), visit(event.collider_b);
 }
 
-// Hash of what the snapshot does not hold but depends on: settings, and the first bodies and joints by creation.
-uint64_t fingerprint(const WorldData& world, uint32_t bodies, uint32_t joints);
+// Who of a state's bodies and joints, by its place there, is to be brought back: its slot among those removed; no_slot:
+// it is alive. Empty: all are.
+struct Returning {
+    Array<uint32_t> bodies, joints;
+    uint32_t body(size_t place) const { return bodies.empty() ? no_slot : bodies[place]; }
+    uint32_t joint(size_t place) const { return joints.empty() ? no_slot : joints[place]; }
+};
+
+// Hash of what the snapshot does not hold but depends on: settings, and its bodies and joints as they were added.
+uint64_t fingerprint(const WorldData& world, const SavedState& state, const Returning& returning);
 
 void capture(const WorldData& world, SavedState& state);
 // Whether the state can be the world's: what apply() relies on. `state` is of the same fingerprint.
-Status check_saved(const WorldData& world, const SavedState& state);
-// Puts the checked state into the world, from which younger bodies and joints were removed.
+Status check_saved(const WorldData& world, const SavedState& state, const Returning& returning);
+// Puts the checked state into the world, whose stores have its bodies and joints.
 void apply(WorldData& world, const SavedState& state);
 
 std::vector<uint8_t> encode(SavedState& state);
