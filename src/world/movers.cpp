@@ -62,7 +62,7 @@ void list_colliders(WorldData& world) {
     for (uint32_t slot : m.bodies) for_each_collider_of(world, slot, [&](uint32_t c) { m.colliders.push_back(c); });
 }
 
-void list_joints(WorldData& world) {
+void list_mover_joints(WorldData& world) {
     Movers& m = world.movers;
     const JointStore& joints = world.joints;
     m.joints.clear();
@@ -143,7 +143,7 @@ void settle_movers(WorldData& world) {
         world.renewed.reserve(colliders);
         world.events.sleeps.reserve(bodies);
     }
-    if (m.joints_changed) list_joints(world);
+    if (m.joints_changed) list_mover_joints(world);
 }
 
 void add_mover(WorldData& world, uint32_t slot) {
