@@ -157,7 +157,7 @@ TEST(WokenPile, TakesShorterStepsAsOneThatDidNotSleep) {
 TEST(WokenPile, OfManyShapesDoesNotJumpEither) {
     World world = WorldBuilder{}.build().value();
     add_mixed_pile(world, 3);
-    run(world, 700);
+    run(world, 1000);
     std::vector<BodyId> sleepers;
     for (int i = 0; i < world.body_count(); ++i)
         if (world.get_static(world.body(i)).type() == BodyType::dynamic && world.get(world.body(i)).asleep())
