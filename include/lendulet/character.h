@@ -131,6 +131,7 @@ private:
         Shape shape, outer;   // as given, and grown by the skin
         float centre = 0.0f;  // of the shape's origin above the feet
         float reach = 0.0f;   // of a ball about the shape's origin that holds it
+        float across = 0.0f;  // the farthest from its y axis
     };
     Character() = default;
     Status check_alive(const World& world) const;

@@ -72,7 +72,7 @@ Result<Character> Character::add(World& world, const CharacterDef& def) {
     for (const Shape& shape : shapes) {
         const Outline outline = outline_of(shape);
         const auto i = static_cast<size_t>(c.stance_count_++);
-        c.stances_[i] = {shape, grown(shape, c.skin_), -outline.lowest, outline.reach};
+        c.stances_[i] = {shape, grown(shape, c.skin_), -outline.lowest, outline.reach, outline.across};
         colliders[i].shape = shape;
         colliders[i].local.translation = {0.0f, -outline.lowest, 0.0f};
         colliders[i].filter = filter_of(def.filter, i == 0);

@@ -2,6 +2,16 @@
 
 namespace lendulet {
 
+namespace {
+
+// Of the angles between a unit vector and the axes.
+Vec3 sines_of(Vec3 u) {
+    auto sine = [](float cosine) { return square_root(maximum(1.0f - cosine * cosine, 0.0f)); };
+    return {sine(u.x), sine(u.y), sine(u.z)};
+}
+
+}  // namespace
+
 QueryFilter CharacterStep::others_of(const Character& c) {
     QueryFilter filter;
     filter.collision = c.filter_;
@@ -62,9 +72,12 @@ void CharacterStep::run() {
         t.walk = dt * falling + (0.5f * dt * dt) * (world.config().gravity + push);  // the parabola, whatever dt
         falling += dt * (world.config().gravity + push);
     }
-    const float reach = stance().reach, below = absolute(stance().centre) + who.step_height_;
-    const float wide = maximum(reach, below) + 0.5f * reach + length(t.way()) + 4.0f * who.skin_;
-    around.look(shape(), {wide, wide, wide}, dt, t.walks ? s.ground_body : BodyId{}, t.carry);
+    // Half as far again as it is wide: what comes from farther off in one step is met in the next.
+    const float more = length(t.way()) + 0.5f * stance().across + 4.0f * who.skin_;
+    const float high = maximum(stance().reach, absolute(stance().centre) + who.step_height_) + more;
+    const float wide = stance().across + more;
+    const Vec3 upright = absolute(up), flat = sines_of(up);
+    around.look(shape(), high * upright + wide * flat, dt, t.walks ? s.ground_body : BodyId{}, t.carry);
 
     const Vec3 ground_velocity = s.ground_velocity;
     const BodyId ground = s.ground_body;
