@@ -5,18 +5,16 @@ namespace {
 
 // What is spent in a step at least, of the slack: rounding.
 constexpr float least_spent = 0.01f;
-
-float gap_between(Vec3 lower, Vec3 upper, Vec3 other_lower, Vec3 other_upper) {
-    return max_component(maximum(other_lower - upper, lower - other_upper));
-}
+// Of the leeway, where there are more triangles than can be listed: over fine meshes that is what still pays.
+constexpr float less_leeway = 0.5f;
 
 // The list before, by the last digits of triangles' numbers: of two that share them one is forgotten.
 class Before {
 public:
     explicit Before(const MeshCandidates& c) {
         for (int i = 0; c.are_listed() && i < c.count; ++i) {
-            index_[i] = c.index[i], away_[i] = c.apart[i] - c.spent;
-            place_[c.index[i] % places] = static_cast<uint8_t>(i + 1);
+            index_[i] = c.listed[i].index, away_[i] = c.listed[i].apart - c.spent;
+            place_[index_[i] % places] = static_cast<uint8_t>(i + 1);
         }
     }
     // What is left of what the triangle was away; null where it is not known.
@@ -34,28 +32,21 @@ private:
 
 }  // namespace
 
-void MeshCandidates::find(const TriangleSurface& surface, Vec3 box_lower, Vec3 box_upper, float leeway, float slack) {
+void MeshCandidates::find(const TriangleSurface& surface, Vec3 box_lower, Vec3 box_upper, float leeway) {
     const Before before(*this);
-    const Vec3 wider{leeway, leeway, leeway};
-    lower = box_lower - wider, upper = box_upper + wider;
-    count = 0;
     spent = 0.0f;
-    for_each_triangle(surface, lower, upper, [&](uint32_t triangle) {
-        if (count >= capacity) {
-            count = capacity + 1;
-            return;
-        }
-        index[count] = triangle;
-        float& away = apart[count++];
-        if (const float* known = before.away(triangle)) {
-            away = *known;
-            return;
-        }
-        Vec3 p[3];
-        surface.corners(triangle, p);
-        const Vec3 least = minimum(minimum(p[0], p[1]), p[2]), most = maximum(maximum(p[0], p[1]), p[2]);
-        away = gap_between(least, most, box_lower, box_upper) - slack;
-    });
+    for (const float some : {leeway, less_leeway * leeway}) {
+        const Vec3 wider{some, some, some};
+        lower = box_lower - wider, upper = box_upper + wider;
+        count = 0;
+        for_each_triangle(surface, lower, upper, [&](uint32_t triangle) {
+            if (count < capacity) listed[count++] = {triangle, 0.0f};
+            else count = capacity + 1;
+        });
+        if (are_listed()) break;
+    }
+    for (int i = 0; are_listed() && i < count; ++i)
+        if (const float* known = before.away(listed[i].index)) listed[i].apart = *known;
 }
 
 void MeshCandidates::move(const Placing& now, float slack) {

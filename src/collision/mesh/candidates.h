@@ -11,7 +11,11 @@
 namespace lendulet {
 
 struct alignas(64) MeshCandidates {
-    static constexpr int capacity = 64;
+    static constexpr int capacity = 192;
+    struct Entry {
+        uint32_t index;
+        float apart;  // what must be spent before the triangle can matter
+    };
 
     Vec3 lower, upper;   // the wider box, mesh frame
     int32_t count = -1;  // -1: not looked for; more than the capacity: they are not listed
@@ -21,8 +25,9 @@ struct alignas(64) MeshCandidates {
     float margin;
     // How far any point of the shape may have come towards any triangle since they were found, step by step, m.
     float spent;
-    uint32_t index[capacity];  // in the order of the surface
-    float apart[capacity];     // what must be spent before the triangle can matter
+    Entry listed[capacity];  // in the order of the surface; without initial values
+
+    MeshCandidates() {}
 
     bool hold(Vec3 box_lower, Vec3 box_upper) const {
         return count >= 0 && lower.x <= box_lower.x && lower.y <= box_lower.y && lower.z <= box_lower.z &&
@@ -30,9 +35,8 @@ struct alignas(64) MeshCandidates {
     }
     bool are_listed() const { return count <= capacity; }
 
-    // The shape's box, margin included; `slack`: how far its surface may be off by rounding. Of those that were listed
-    // what is known stays.
-    void find(const TriangleSurface& surface, Vec3 box_lower, Vec3 box_upper, float leeway, float slack);
+    // The shape's box, margin included. Of those that were listed what is known stays, and others may matter.
+    void find(const TriangleSurface& surface, Vec3 box_lower, Vec3 box_upper, float leeway);
 
     // A shape of which no point is farther than `reach` from its position.
     struct Placing {
@@ -48,14 +52,14 @@ struct alignas(64) MeshCandidates {
     int near(uint32_t (&triangles)[capacity], uint8_t (&places)[capacity]) const {
         int found = 0;
         for (int i = 0; i < count; ++i) {
-            triangles[found] = index[i], places[found] = static_cast<uint8_t>(i);
-            found += apart[i] <= spent;
+            triangles[found] = listed[i].index, places[found] = static_cast<uint8_t>(i);
+            found += listed[i].apart <= spent;
         }
         return found;
     }
     // What was found of one of them: what it is away from mattering, or less.
-    void set_apart(int place, float away) { apart[place] = spent + away; }
+    void set_apart(int place, float away) { listed[place].apart = spent + away; }
 };
-static_assert(sizeof(MeshCandidates) == 576);
+static_assert(sizeof(MeshCandidates) == 1600);
 
 }  // namespace lendulet

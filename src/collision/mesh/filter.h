@@ -49,6 +49,13 @@ struct MeshFilterBatch {
         beside = 4,        // all of the core is outside one of its sides
         first_beyond = 3,  // number of the first of three flags: edges as of beyond_edges()
     };
+
+    // Out, but for balls: those that the core is farther from than the limit and outside a side of, though it crosses
+    // their planes. They give nothing, and neither do the edges and corners that they share with others.
+    int far;
+    uint32_t far_number[room];
+    float far_behind[room];  // 1: the shape's centre is behind it
+
     bool is(Flag flag, int i) const { return (static_cast<int>(flags[i]) & flag) != 0; }
 };
 
@@ -90,6 +97,10 @@ public:
     void set_lowest(int i, Vec3 p) { batch_.lowest[0][i] = p.x, batch_.lowest[1][i] = p.y, batch_.lowest[2][i] = p.z; }
     bool has_lowest() const { return batch_.has_lowest; }
     int32_t face(int i) const { return static_cast<int32_t>(batch_.face[i]); }
+    // The triangles that are far, by number.
+    int far() const { return batch_.far; }
+    uint32_t far_number(int i) const { return batch_.far_number[i]; }
+    bool is_far_behind(int i) const { return batch_.far_behind[i] > 0.0f; }
     const MeshFilterBatch& batch() const { return batch_; }
 
 private:

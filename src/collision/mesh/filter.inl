@@ -185,6 +185,14 @@ LENDULET_FORCE_INLINE void test_block(MeshFilterBatch& b, int first, uint32_t us
     if (b.hull_faces == 0) face = facing(b, away[0]);
     else face = facing_hull(b, away[0], p, within_limit);
     live = live & (within_limit | (height < zero));
+    if (b.shape->kind != GeometryKind::point) {
+        auto far = live & ~within_limit & beside;
+        const uint32_t far_bits = mask_bits(far) & used;
+        store_numbers<F>(b.far_number + b.far, far_bits, static_cast<uint32_t>(first));
+        store_packed(b.far_behind + b.far, far_bits, select(behind, splat<F>(1.0f), zero));
+        b.far += __builtin_popcount(far_bits);
+        live = live & ~far;
+    }
     const uint32_t bits = mask_bits(live) & used;
 
     auto flag = [&](auto mask, int value) { return select(mask, splat<F>(static_cast<float>(value)), zero); };
@@ -210,7 +218,7 @@ LENDULET_FORCE_INLINE void test_block(MeshFilterBatch& b, int first, uint32_t us
 
 template <int W>
 void filter_triangles(MeshFilterBatch& batch) {
-    batch.live = 0;
+    batch.live = batch.far = 0;
     batch.has_lowest = false;
     for (int first = 0; first < batch.count; first += W) {
         const int left = batch.count - first;

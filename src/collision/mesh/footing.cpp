@@ -1,5 +1,7 @@
 #include "collision/mesh/footing.h"
 
+#include <cstring>
+
 #include "collision/mesh/filter.h"
 
 namespace lendulet {
@@ -24,35 +26,39 @@ uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, const TriangleSides&
     return beyond;
 }
 
-void Footing::note(const MeshQuery& q, uint32_t triangle, bool from_behind, uint8_t beyond) {
-    if (count_ == capacity) return;
-    Noted& n = noted_[count_++];
-    n.index = triangle;
-    for (int k = 0; k < 3; ++k) n.vertex[k] = q.surface.vertex(triangle, k);
-    n.beyond = beyond;
-    n.from_behind = from_behind;
+void Footing::Linking::add(uint32_t name, uint8_t beyond, bool from_behind) {
+    uint16_t& begin = first[name % lists];
+    at[count] = {name, begin, beyond, from_behind};
+    begin = static_cast<uint16_t>(++count);
 }
 
-Footing::Noted Footing::look_up(const MeshQuery& q, uint32_t index) const {
-    for (int i = 0; i < count_; ++i)
-        if (noted_[i].index == index) return noted_[i];
-    const Triangle t = q.triangle(index);
-    return {index,
-            {q.surface.vertex(index, 0), q.surface.vertex(index, 1), q.surface.vertex(index, 2)},
-            beyond_edges(q, t, TriangleSides(t), support_core(q.shape, -t.normal)),
-            t.from_behind};
+const Footing::Linked* Footing::Linking::find(uint32_t name, bool from_behind) const {
+    for (uint32_t i = first[name % lists]; i != 0; i = at[i - 1].next)
+        if (at[i - 1].name == name && at[i - 1].from_behind == from_behind) return &at[i - 1];
+    return nullptr;
 }
 
-bool Footing::is_settled(uint32_t vertex, bool from_behind) const {
+void Footing::link(const MeshQuery& q) {
+    linked_ = true;
+    std::memset(triangles_.first, 0, sizeof triangles_.first);
+    std::memset(settled_.first, 0, sizeof settled_.first);
     for (int i = 0; i < count_; ++i) {
-        const Noted& n = noted_[i];
+        const Beside& n = noted_[i];
+        triangles_.add(n.index, n.beyond, n.from_behind);
         for (int k = 0; k < 3; ++k)
-            if (n.vertex[k] == vertex && n.from_behind == from_behind && is_within(n.beyond, k)) return true;
+            if (is_within(n.beyond, k)) settled_.add(q.surface.vertex(n.index, k), 0, n.from_behind);
     }
-    return false;
 }
 
-bool Footing::may_touch_rim(const MeshQuery& q, const Beside& t) const {
+Footing::Beside Footing::look_up(const MeshQuery& q, uint32_t index, bool from_behind) const {
+    const Linked* noted = triangles_.find(index, from_behind);
+    if (noted != nullptr) return {index, noted->beyond, from_behind};
+    const Triangle t = q.triangle(index);
+    return {index, beyond_edges(q, t, TriangleSides(t), support_core(q.shape, -t.normal)), t.from_behind};
+}
+
+bool Footing::may_touch_rim(const MeshQuery& q, const Beside& t) {
+    if (!linked_) link(q);
     const uint8_t touching = t.from_behind ? q.surface.concave_edges(t.index) : q.surface.convex_edges(t.index);
     uint8_t corners = 0;  // that may be touched: those of edges that the lowest point is beyond
     for (int i = 0; i < 3; ++i)
@@ -61,19 +67,20 @@ bool Footing::may_touch_rim(const MeshQuery& q, const Beside& t) const {
         if ((t.beyond >> i & 1) == 0) continue;
         int32_t across = q.surface.neighbour(t.index, i);
         if (across < 0) return true;
-        Noted n = look_up(q, static_cast<uint32_t>(across));
+        const Beside n = look_up(q, static_cast<uint32_t>(across), t.from_behind);
         if (n.from_behind != t.from_behind) return true;
         for (int k = 0; k < 3; ++k) {
             bool shared = q.surface.neighbour(n.index, k) == static_cast<int32_t>(t.index);
             if (shared && (n.beyond >> k & 1) != 0 && (touching >> i & 1) != 0) return true;
             for (int c : {i, (i + 1) % 3})
-                if (n.vertex[k] == q.surface.vertex(t.index, c) && is_within(n.beyond, k))
+                if (is_within(n.beyond, k) && q.surface.vertex(n.index, k) == q.surface.vertex(t.index, c))
                     corners &= static_cast<uint8_t>(~bit(c));
         }
     }
     for (int c = 0; c < 3; ++c) {
         bool touches = (touching & (bit(c) | bit(before(c)))) != 0;
-        if ((corners >> c & 1) != 0 && touches && !is_settled(q.surface.vertex(t.index, c), t.from_behind)) return true;
+        if ((corners >> c & 1) != 0 && touches && !settled_.find(q.surface.vertex(t.index, c), t.from_behind))
+            return true;
     }
     return false;
 }

@@ -21,8 +21,11 @@ uint8_t beyond_edges(const MeshQuery& q, const Triangle& t, const TriangleSides&
 // The triangles that one query has looked at.
 class Footing {
 public:
-    // Beyond the capacity nothing is kept, and more closest points are sought than necessary.
-    void note(const MeshQuery& q, uint32_t triangle, bool from_behind, uint8_t beyond);
+    // Before anything is asked. Nothing of what is farther than the limit is touched: its lowest point is beyond no
+    // edge. Above the capacity nothing is kept, and more closest points are sought than necessary.
+    void note(uint32_t triangle, bool from_behind, uint8_t beyond) {
+        if (count_ < capacity) noted_[count_++] = {triangle, beyond, from_behind};
+    }
     // Of a triangle that the lowest point is not over.
     struct Beside {
         uint32_t index;
@@ -31,22 +34,34 @@ public:
     };
     // False only where the shape cannot touch an edge or corner of the triangle, all of whose edges are gentle or
     // cannot touch.
-    bool may_touch_rim(const MeshQuery& q, const Beside& t) const;
+    bool may_touch_rim(const MeshQuery& q, const Beside& t);
 
 private:
-    static constexpr int capacity = 32;
-    struct Noted {
-        uint32_t index, vertex[3];
+    static constexpr int capacity = 192;
+    static constexpr uint32_t lists = 64;
+    struct Linked {
+        uint32_t name;  // of a triangle or a corner
+        uint16_t next;  // one more than the number of the next whose name has the same last digits; 0: none
         uint8_t beyond;
         bool from_behind;
     };
+    struct Linking {
+        uint16_t first[lists];
+        Linked at[3 * capacity];
+        int count = 0;
 
+        void add(uint32_t name, uint8_t beyond, bool from_behind);
+        const Linked* find(uint32_t name, bool from_behind) const;
+    };
+
+    void link(const MeshQuery& q);
     // Of any triangle, noted or not.
-    Noted look_up(const MeshQuery& q, uint32_t index) const;
-    bool is_settled(uint32_t vertex, bool from_behind) const;
+    Beside look_up(const MeshQuery& q, uint32_t index, bool from_behind) const;
 
     int count_ = 0;
-    Noted noted_[capacity];
+    bool linked_ = false;
+    Beside noted_[capacity];
+    Linking triangles_, settled_;  // settled: corners of a triangle whose lowest point is within both sides there
 };
 
 }  // namespace lendulet

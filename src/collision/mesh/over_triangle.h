@@ -68,6 +68,8 @@ struct OverTriangleBatch {
     void begin(const MeshFilterBatch& left, int from);
     void set_face(int i, const ShapeFace& face);
     bool lowest_over(int i) const { return (bits[i] >> lowest_is_over & 1) != 0; }
+    // Whether a face that was cut has no point over the triangle, and neither has the core its lowest.
+    bool is_bare(int i) const { return corner_count[i] > 0.0f && (bits[i] & ((1 << (lowest_is_over + 1)) - 1)) == 0; }
     uint8_t beyond(int i) const { return static_cast<uint8_t>(bits[i] >> first_beyond & 7); }
     // What it found of number i, which is `t`. A corner of the shape has the same name over every triangle, so that it
     // keeps it while it slides.

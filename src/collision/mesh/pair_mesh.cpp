@@ -49,7 +49,7 @@ struct MeshCollision : MeshQuery {
 
     Footing footing;
     // Triangles that the shape is beside: their edges are left until it is known what else it stands on.
-    static constexpr int most_beside = 48;
+    static constexpr int most_beside = MeshCandidates::capacity + OverTriangleBatch::capacity;
     int beside_count = 0;
     Footing::Beside beside[most_beside];
 };
@@ -72,7 +72,7 @@ void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&
         visit(triangles, filter);
     };
     const Vec3 lower = q.position + q.lower, upper = q.position + q.upper;
-    static_assert(MeshCandidates::capacity <= MeshFilter::capacity);
+    constexpr int most = MeshFilter::capacity;
     uint32_t waiting[MeshCandidates::capacity];
     if (kept != nullptr) {
         const MeshCandidates::Placing now{q.position, q.turn, q.pair.margin, filter.reach()};
@@ -81,13 +81,16 @@ void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&
         else kept->move(now, slack);
         if (!kept->hold(lower, upper) || kept->spent > most_spent * q.size) {
             const float leeway = leeway_of_size * q.size + leeway_of_margin * q.pair.margin;
-            kept->find(q.surface, lower, upper, minimum(leeway, most_leeway * q.size), slack);
+            kept->find(q.surface, lower, upper, minimum(leeway, most_leeway * q.size));
         }
         if (kept->are_listed()) {
             uint8_t places[MeshCandidates::capacity];
             const int count = kept->near(waiting, places);
-            look_through(waiting, count);
-            for (int i = 0; i < count; ++i) kept->set_apart(places[i], filter.away(i));
+            for (int first = 0; first < count; first += most) {
+                const int some = count - first < most ? count - first : most;
+                look_through(waiting + first, some);
+                for (int i = 0; i < some; ++i) kept->set_apart(places[first + i], filter.away(i));
+            }
             return;
         }
     }
@@ -96,7 +99,7 @@ void for_each_near(const MeshQuery& q, float limit, MeshCandidates* kept, Visit&
     const Vec3 wider{leeway, leeway, leeway};
     for_each_triangle(q.surface, lower - wider, upper + wider, [&](uint32_t index) {
         waiting[count++] = index;
-        if (count < MeshCandidates::capacity) return;
+        if (count < most) return;
         look_through(waiting, count);
         count = 0;
     });
@@ -426,11 +429,21 @@ bool is_beside(const MeshQuery& q, uint32_t index, const MeshFilter& found, int 
 
 void leave_for_later(MeshCollision& q, const Footing::Beside& t) { q.beside[q.beside_count++] = t; }
 
+// Where nothing of the shape's face lies over a triangle: whether that is all, or its rim is left for later.
+bool bare_triangle(MeshCollision& q, const Footing::Beside& t, bool apart, float height) {
+    const uint8_t convex = q.surface.convex_edges(t.index), concave = q.surface.concave_edges(t.index);
+    const uint8_t touching = t.from_behind ? concave : convex;
+    if (touching == 0 && (height >= 0.0f || !t.from_behind || (convex | concave) == 0)) return true;
+    if (apart) return true;
+    if ((touching & q.surface.sharp_edges(t.index)) != 0 || q.beside_count >= MeshCollision::most_beside) return false;
+    leave_for_later(q, t);
+    return true;
+}
+
 // What a triangle gives whose face is cut.
 void convex_triangle(MeshCollision& q, const FaceJob& job, int lane, TriangleContact& out) {
     const Triangle& t = job.t;
     const float limit = q.batch.limit;
-    q.footing.note(q, t.index, t.from_behind, job.beyond);
     FaceOverTriangle over;
     read_over(q, job, lane, over);
     // A face within a flat or hollow part can touch with its own normal only, and so can the part of one within a
@@ -470,13 +483,17 @@ void collide_batch(MeshCollision& q, const uint32_t* triangles, MeshFilter& foun
         if (q.face_of[k] == no_face) {
             if (one_sided && found.is_behind(i)) continue;
             const uint32_t index = triangles[found.number(i)];
-            q.footing.note(q, index, false, found.edges_beyond(i));
+            q.footing.note(index, false, found.edges_beyond(i));
             if (q.surface.convex_edges(index) != 0) leave_for_later(q, {index, found.edges_beyond(i), false});
             continue;
         }
         const float height = batch.lowest_height[k];
         if (height > batch.limit) continue;
+        const uint32_t index = triangles[found.number(i)];
         const uint8_t beyond = found.has_lowest() ? found.edges_beyond(i) : batch.beyond(k);
+        q.footing.note(index, found.is_behind(i), found.is_apart(i) ? uint8_t{0} : beyond);
+        if (batch.is_bare(k) && bare_triangle(q, {index, beyond, found.is_behind(i)}, found.is_apart(i), height))
+            continue;
         const FaceJob job{left_triangle(q, triangles, found, i),
                           q.face_at(q.face_of[k]).face,
                           found.lowest(i),
@@ -490,6 +507,11 @@ void collide_batch(MeshCollision& q, const uint32_t* triangles, MeshFilter& foun
 }
 
 void collide_faces(MeshCollision& q, const uint32_t* triangles, MeshFilter& found, MeshManifolds& manifolds) {
+    const bool one_sided = q.surface.one_sided();
+    for (int i = 0; i < found.far(); ++i) {
+        const bool behind = found.is_far_behind(i);
+        if (!one_sided || !behind) q.footing.note(triangles[found.far_number(i)], behind, 0);
+    }
     for (int first = 0; first < found.live(); first += OverTriangleBatch::capacity) {
         q.face_count = 0;
         collide_batch(q, triangles, found, first, manifolds);
@@ -497,7 +519,7 @@ void collide_faces(MeshCollision& q, const uint32_t* triangles, MeshFilter& foun
 }
 
 // What the shape is beside, once all that it is over is known.
-void beside_triangle(const MeshCollision& q, int i, TriangleContact& out) {
+void beside_triangle(MeshCollision& q, int i, TriangleContact& out) {
     if (!q.footing.may_touch_rim(q, q.beside[i])) return;
     const Triangle t = q.triangle(q.beside[i].index);
     float limit = q.pair.margin + q.shape.rounding;

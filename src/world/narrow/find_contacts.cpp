@@ -124,7 +124,7 @@ private:
         if (p.kind == PairKind::boxes) return;
         prefetch(&world_.colliders.geometry[p.a]);
         prefetch(&world_.colliders.geometry[p.b]);
-        if (p.capacity > 1) prefetch<sizeof(MeshCandidates) / 64>(&world_.pairs.near_triangles[p.surface]);
+        if (p.capacity > 1) prefetch<9>(&world_.pairs.near_triangles[p.surface]);
         else prefetch<2>(&world_.pairs.caches[number]);
     }
 
