@@ -7,25 +7,12 @@
 
 #include "base/hash.h"
 #include "scale.h"
-#include "scenes/scene.h"
+#include "world/scene_steps.h"
 #include "world/story.h"
 #include "world/support.h"
 
 namespace lendulet::test {
 namespace {
-
-void play(Scene& scene, int count) {
-    for (int i = 0; i < count; ++i) {
-        if (scene.before_step) scene.before_step(scene.world, static_cast<int>(scene.world.step_count()));
-        scene.world.update(scene.dt).value();
-    }
-}
-
-std::vector<uint64_t> hashes_ahead(Scene& scene, int count) {
-    std::vector<uint64_t> list;
-    for (int i = 0; i < count; ++i) play(scene, 1), list.push_back(scene.world.hash());
-    return list;
-}
 
 std::vector<BodyId> bodies_of(const World& world) {
     std::vector<BodyId> list;
@@ -70,12 +57,12 @@ TEST_P(Removals, AreUndoneToTheLastBit) {
     const Played& run = GetParam();
     Scene scene = build_scene(run.scene).value();
     World& world = scene.world;
-    play(scene, run.before);
+    step(scene, run.before);
     const std::vector<uint8_t> saved = world.snapshot();
     const uint64_t hash = world.hash();
     const std::vector<BodyId> bodies = bodies_of(world);
     const std::vector<JointId> joints = joints_of(world);
-    const std::vector<uint64_t> expected = hashes_ahead(scene, run.after);
+    const std::vector<uint64_t> expected = hashes(scene, run.after);
     for (int nth : {3, 1, 2}) {
         world.restore(saved).value();
         ravage(world, nth, scene.dt);
@@ -86,7 +73,7 @@ TEST_P(Removals, AreUndoneToTheLastBit) {
         EXPECT_EQ(world.check(), "");
         EXPECT_EQ(bodies_of(world), bodies);
         EXPECT_EQ(joints_of(world), joints);
-        ASSERT_EQ(hashes_ahead(scene, run.after), expected) << nth;
+        ASSERT_EQ(hashes(scene, run.after), expected) << nth;
         EXPECT_EQ(world.check(), "");
     }
 }

@@ -5,24 +5,11 @@
 #include <string>
 
 #include "base/hash.h"
-#include "scenes/scene.h"
+#include "world/scene_steps.h"
 #include "world/support.h"
 
 namespace lendulet::test {
 namespace {
-
-void step(Scene& scene, int count) {
-    for (int i = 0; i < count; ++i) {
-        if (scene.before_step) scene.before_step(scene.world, static_cast<int>(scene.world.step_count()));
-        scene.world.update(scene.dt).value();
-    }
-}
-
-std::vector<uint64_t> hashes(Scene& scene, int count) {
-    std::vector<uint64_t> list;
-    for (int i = 0; i < count; ++i) step(scene, 1), list.push_back(scene.world.hash());
-    return list;
-}
 
 struct Stretch {
     const char* scene;
