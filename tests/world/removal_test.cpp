@@ -5,9 +5,8 @@
 #include <cstring>
 #include <string>
 
-#include "base/hash.h"
 #include "scale.h"
-#include "world/scene_steps.h"
+#include "world/snapshots.h"
 #include "world/story.h"
 #include "world/support.h"
 
@@ -422,18 +421,6 @@ TEST(Removal, StoriesAreToldAgain) {
     }
 }
 
-// Sealed as the engine does it, see snapshot_test.cpp.
-void seal_bytes(std::vector<uint8_t>& bytes) {
-    const size_t size = bytes.size() - 8;
-    uint64_t sum = size;
-    for (size_t i = 0; i < size; i += 8) {
-        uint64_t word = 0;
-        std::memcpy(&word, bytes.data() + i, std::min<size_t>(8, size - i));
-        sum = hash_combine(sum, word);
-    }
-    std::memcpy(bytes.data() + size, &sum, 8);
-}
-
 // Nonsense that passes the checksum, of a world whose bodies and joints have to be brought back.
 TEST(Removal, SealedNonsenseDoesNoHarm) {
     Sorts s;
@@ -449,7 +436,7 @@ TEST(Removal, SealedNonsenseDoesNoHarm) {
         add_cube(world, 5.0f, 0);
         std::vector<uint8_t> bytes = saved;
         bytes[i] = static_cast<uint8_t>(bytes[i] ^ (i % 3 == 0 ? 0xff : i % 3 == 1 ? 0x41 : 0x02));
-        seal_bytes(bytes);
+        seal(bytes);
         const std::vector<uint8_t> before = i % 16 == 0 ? world.snapshot() : std::vector<uint8_t>{};
         if (!world.restore(bytes).ok()) {
             ++refused;

@@ -4,8 +4,7 @@
 #include <cstring>
 #include <string>
 
-#include "base/hash.h"
-#include "world/scene_steps.h"
+#include "world/snapshots.h"
 #include "world/support.h"
 
 namespace lendulet::test {
@@ -308,17 +307,6 @@ struct Small {
         run(world, 10);
         hash = world.hash();
     }
-    // Like the engine's own: of all bytes but the last eight, which hold it.
-    static void seal(std::vector<uint8_t>& bytes) {
-        size_t size = bytes.size() - 8;
-        uint64_t sum = size;
-        for (size_t i = 0; i < size; i += 8) {
-            uint64_t word = 0;
-            std::memcpy(&word, bytes.data() + i, std::min<size_t>(8, size - i));
-            sum = hash_combine(sum, word);
-        }
-        std::memcpy(bytes.data() + size, &sum, 8);
-    }
 };
 
 TEST(Snapshot, TruncatedOrAlteredBytesChangeNothing) {
@@ -349,7 +337,7 @@ TEST(Snapshot, SealedNonsenseDoesNoHarm) {
     for (size_t i = 16; i + 8 < s.saved.size(); ++i) {
         std::vector<uint8_t> bytes = s.saved;
         bytes[i] = static_cast<uint8_t>(bytes[i] ^ (i % 3 == 0 ? 0xff : 0x41));
-        Small::seal(bytes);
+        seal(bytes);
         refused += !s.world.restore(bytes).ok();
         if (i % 8 == 0) run(s.world, 1);
     }
